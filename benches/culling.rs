@@ -24,7 +24,7 @@ use pinhole::{
 
 use self::one_by_one::one_by_one;
 
-/// Number of times that each picture is rendered in each way. The shortest CPU time counts, since
+/// Number of times that each picture is rendered in each way. The shortest CPU time is used, since
 /// other work on the machine only makes a render slower. With fewer rounds, the results would
 /// scatter more; more rounds would take longer.
 const ROUNDS: usize = 3;
@@ -52,7 +52,8 @@ const SCENES: [&str; 5] = [
 ];
 
 fn main() {
-    // `cargo test` also builds and runs benchmarks, but they contain nothing to test.
+    // `cargo test` runs this program without `--bench`. The program contains no tests, so it ends
+    // here.
     if !env::args().any(|argument| argument == "--bench") {
         return;
     }
@@ -143,9 +144,9 @@ fn tiny(count: u32) -> String {
     text
 }
 
-/// Returns a scene of `count` overlapping triangles in all directions, each two hundred times as
-/// long as wide. Even a small part of the picture may show very many of them. Culling may therefore
-/// be up to three times as slow as tracing each sample alone.
+/// Returns a scene of `count` overlapping triangles, each two hundred times as long as wide, in all
+/// orientations. Many of them cross even a small part of the picture, so culling may be up to three
+/// times as slow as tracing each sample alone.
 fn slivers(count: u32) -> String {
     let mut text = String::from("camera { eye (0, 0, 9) lookat (0, 0, 0) }\n");
     for i in 0..count {
@@ -174,8 +175,8 @@ fn example(name: &str) -> Scene {
     read(&fs::read_to_string(path).expect("the example is there"))
 }
 
-/// Returns the scene with a picture of `width` pixels in a row, an aspect ratio of 16:9, and
-/// `per_pixel` samples per pixel.
+/// Returns the scene with a picture that is `width` pixels wide, has an aspect ratio of 16:9, and
+/// has `per_pixel` samples per pixel.
 fn sized(scene: &Scene, width: u32, method: Method, per_pixel: u64) -> Scene {
     let mut scene = scene.clone();
     (scene.image.width, scene.image.height) = (width, width * 9 / 16);
@@ -265,9 +266,9 @@ fn textbook(scene: &Scene) -> impl Fn() {
     }
 }
 
-/// Measures what the exact picture of figure 9.9 costs, with and without a far plane. Compares its
-/// time with the time to trace 1, 2 and 4 samples per pixel, each sample alone. The measurements
-/// alternate, so that other work on the machine affects all of them.
+/// Measures the time of the exact picture of the example scene `figure_9_9`, with and without a far
+/// plane. Compares it with the time of tracing 1, 2 and 4 samples per pixel, each sample alone. The
+/// measurements alternate, so that other work on the machine affects all of them.
 fn exact() {
     const FEW: [u64; 3] = [1, 2, 4];
     println!("one thread; exact by the time of so many samples a pixel one by one, random");
@@ -312,10 +313,12 @@ fn exact() {
     }
 }
 
-/// Renders figure 9.9 on one thread and returns, so that the whole process can be measured.
+/// Renders the example scene `figure_9_9` on one thread and prints the CPU time. The program then
+/// ends, so an outside tool can measure the whole process.
+///
 /// `arguments` are the way of tracing, the sampling method, the picture's width, the samples per
-/// pixel, and the number of pictures. The way `None` prepares everything but renders nothing.
-/// Prints the CPU time of rendering the pictures.
+/// pixel, and the number of pictures. If the way is not the name of a [`Way`], nothing is rendered:
+/// an outside tool then measures the preparation alone.
 fn once(arguments: &[String]) {
     let [way, method, numbers @ ..] = arguments else {
         panic!("--once WAY METHOD WIDTH SAMPLES TIMES");

@@ -1,7 +1,7 @@
 //! Measures how long an editor waits: `cargo bench --bench editor`. See README.md beside this file.
 //!
-//! The server runs as it does for an editor. Each time starts before a message is written and ends
-//! when the answer has been read.
+//! The server runs as it does for an editor. A measured time begins before a message is written and
+//! ends when the answer has been read.
 
 use std::{
     env,
@@ -30,7 +30,8 @@ const FEW: u32 = 10;
 const URI: &str = "file:///spheres.scn";
 
 fn main() {
-    // `cargo test` also builds and runs benchmarks, but they contain nothing to test.
+    // `cargo test` runs this program without `--bench`. The program contains no tests, so it ends
+    // here.
     if !env::args().any(|argument| argument == "--bench") {
         return;
     }
@@ -101,9 +102,10 @@ fn main() {
     tokens_in_one_line();
 }
 
-/// Measures the formatting of a text with one block per line, and the diagnostics after the editor
-/// has applied the edits. The client sends the edits back as changes. It begins with the last one,
-/// so that no change moves the positions of the others.
+/// Measures formatting a text with one block per line. Then measures the time from applying the
+/// formatter's edits to receiving the new diagnostics. The client applies an edit by sending it to
+/// the server as a change; the last edit is sent first, so that no change moves the positions of
+/// the others.
 fn formatted() {
     let text = spheres(OBJECTS, Layout::Lines);
     let mut server = Server::start(&text);
@@ -159,7 +161,7 @@ fn tokens_in_one_line() {
     in_one_line(&line, FEW);
 }
 
-/// Measures the answers for which an editor waits, in a text of one line.
+/// Measures the times of the requests whose answers an editor waits for, in a text of one line.
 fn in_one_line(line: &str, rounds: u32) {
     let mut server = Server::start(line);
     let mut letters = Letters::at(0, 0);

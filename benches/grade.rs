@@ -1,9 +1,10 @@
-//! Measures how well `diff` names the mistakes in wrong pictures. Runs the program on pictures with
-//! known mistakes, which `tests/integration/grade` makes.
+//! Measures how well `pinhole diff` names the mistakes in wrong pictures. The pictures, whose
+//! mistakes are known, come from `tests/integration/grade`.
 //!
-//! `cargo bench --bench grade` judges pictures of 320 × 180 pixels; with `-- --all`, pictures of
-//! all sizes and ways of sampling. `-- --write FOLDER` writes the pictures, their scenes and
-//! `truth.json` instead of judging them. `--program FILE` tests another program.
+//! `cargo bench --bench grade` tests pictures of 320 × 180 pixels; with `-- --all`, pictures of all
+//! sizes and ways of sampling. `-- --write FOLDER` writes the pictures, their scenes and
+//! `truth.json` without testing them. `--program FILE` tests FILE instead of the `pinhole` built
+//! here.
 #![allow(
     clippy::disallowed_methods,
     reason = "a benchmark reads and writes files of its own"
@@ -87,9 +88,9 @@ fn main() {
     }
 }
 
-/// Returns sets of `count` mistakes. For 0, this is only the empty set; for 1, each mistake alone.
-/// For 2 and 3, each mistake of an object is combined with mistakes of the camera, the board, the
-/// picture or another object.
+/// Returns sets of `count` mistakes that a renderer may make. For a `count` of 0, returns only the
+/// empty set; for 1, each mistake alone. For 2 and 3, combines each mistake of an object with
+/// mistakes of the camera, the board, the picture or another object.
 fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     let objects = OF_THE_OBJECTS.iter().enumerate();
     let sets = objects.flat_map(|(index, object)| {
@@ -131,8 +132,9 @@ fn cases(
         let names: Vec<_> = set.iter().map(|one| one.title()).collect();
         let whole = case(scene, &names);
         let picture = whole.picture();
-        // The mistake `cut_off` truncates bytes instead of rounding them. It changes bytes by a
-        // single step, so a single step counts as a visible difference.
+        // Largest difference of a byte that is regarded as invisible, in 8-bit steps: normally 1,
+        // which rounding may explain. It is 0 if the mistake `cut_off` is present: `cut_off`
+        // truncates bytes instead of rounding them, so it changes bytes by only a single step.
         let least = u8::from(!names.contains(&"cut_off"));
         let is_seen = |left_out: usize| {
             let mut others = names.clone();
@@ -141,7 +143,8 @@ fn cases(
             let mut bytes = picture.as_raw().iter().zip(other.as_raw());
             bytes.any(|(a, b)| a.abs_diff(*b) > least)
         };
-        // A transposed picture may have another size than the scene. It is then left out.
+        // The mistake of transposing a picture may change its size. A picture of another size than
+        // the scene's is left out.
         let is_whole = picture.dimensions() == (width, height);
         (is_whole && (0..names.len()).all(is_seen)).then_some(whole)
     };
@@ -150,7 +153,8 @@ fn cases(
     sets.filter_map(|(scene, set)| seen(scene, set)).collect()
 }
 
-/// Judges the pictures `cases` and prints a row of the table with the number of correct judgements.
+/// Runs `diff` on the pictures of `cases`, and prints a row of the table: how many answers name
+/// exactly the right mistakes.
 fn judge(program: &str, of: &str, cases: &[Case]) {
     let folder = tempfile::tempdir().expect("a folder for pictures");
     let (mut right, mut time) = (0, Duration::ZERO);

@@ -2,8 +2,8 @@
 //! `cargo bench --bench many`. See README.md beside this file.
 //!
 //! `-- --write COUNT` writes a scene of COUNT small spheres to standard output instead.
-//! `-- --phases COUNT…` prints the CPU seconds of each phase once, and the memory of the prepared
-//! scene. With `--cube`, the spheres are in a cube instead of all over the picture.
+//! `-- --phases COUNT…` prints, for each COUNT, the CPU seconds of each phase and the memory of the
+//! prepared scene. With `--cube`, the spheres lie in a cube instead of all over the picture.
 #![allow(
     clippy::disallowed_methods,
     reason = "a benchmark reads and writes files of its own"
@@ -56,7 +56,8 @@ fn main() {
             .for_each(|count| phases(&read(text(count))));
         return;
     }
-    // `cargo test` also builds and runs benchmarks, but they contain nothing to test.
+    // `cargo test` runs this program without `--bench`. The program contains no tests, so it ends
+    // here.
     if !arguments.iter().any(|argument| argument == "--bench") {
         return;
     }
@@ -78,8 +79,8 @@ fn picture(world: &World, scene: &Scene) {
     black_box(film).expect("there is memory for it");
 }
 
-/// Prints the CPU seconds of preparing and of rendering a scene, and the memory that the prepared
-/// scene takes, in bytes per object.
+/// Prints the CPU seconds of preparing and of rendering a scene, and the size of the prepared scene
+/// in memory, in bytes per object.
 fn phases(scene: &Scene) {
     const RENDERS: u32 = 4;
     let count = scene.objects.len();
@@ -89,7 +90,8 @@ fn phases(scene: &Scene) {
     (0..RENDERS).for_each(|_| picture(&world, scene));
     let rendered = (cpu_seconds() - after.0) / f64::from(RENDERS);
     let start = cpu_seconds();
-    // Without culling, each sample is traced alone. The quadtree finds the objects that it may hit.
+    // For comparison, each sample is traced alone, without culling. The quadtree finds the objects
+    // that the sample's ray may hit.
     let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
     let whole = Area::whole(scene.image.width, scene.image.height);
     black_box(one_by_one(&world, &sampling, whole));

@@ -1,5 +1,5 @@
-//! Compares times for each method: of generating sample points, of rendering on one or more
-//! threads, of writing files, and of tracing each sample alone. Run it with
+//! Measures each sampling method: the times for generating sample points, for rendering on one or
+//! more threads, for writing files, and for tracing each sample alone. Run it with
 //! `cargo bench --bench render`. See README.md beside this file.
 
 use std::{env, hint::black_box, io::Cursor, num::NonZero, thread, time::Instant};
@@ -30,7 +30,8 @@ const PER_PIXEL: u64 = 16;
 const RUNS: usize = 5;
 
 fn main() {
-    // `cargo test` also builds and runs benchmarks, but they contain nothing to test.
+    // `cargo test` runs this program without `--bench`. The program contains no tests, so it ends
+    // here.
     if !env::args().any(|argument| argument == "--bench") {
         return;
     }

@@ -25,8 +25,8 @@ use self::{
 
 mod spheres;
 
-/// Parser that the crate pest generates from the same grammar, for comparison. All times are
-/// printed as multiples of this parser's time.
+/// Parser that the crate pest generates from the grammar of the scene language, for comparison with
+/// Pinhole's own parser. All times are printed as multiples of the generated parser's time.
 mod grammar {
     #[derive(pest_derive::Parser)]
     #[grammar = "grammar/scn.pest"]
@@ -51,7 +51,8 @@ fn main() {
         print!("{}", spheres(count.unwrap_or(OBJECTS), layout));
         return;
     }
-    // `cargo test` also builds and runs benchmarks, but they contain nothing to test.
+    // `cargo test` runs this program without `--bench`. The program contains no tests, so it ends
+    // here.
     if !arguments.iter().any(|argument| argument == "--bench") {
         return;
     }

@@ -73,8 +73,9 @@ impl Area {
         (y - self.y) as usize * self.width as usize + (x - self.x) as usize
     }
 
-    /// Returns the tiles of the area, row by row: squares of side `side`, in pixels, from the
-    /// area's top left corner on, cut off at its right and bottom edges.
+    /// Divides the area into tiles, squares of side `side` in pixels, and returns them row by row.
+    /// The first tile lies in the area's top left corner; tiles at the right and bottom edges are
+    /// cut off.
     pub fn tiles(self, side: u32) -> impl Iterator<Item = Self> {
         let starts = move |length: u32| (0..length).step_by(side as usize);
         starts(self.height).flat_map(move |top| {
@@ -87,8 +88,9 @@ impl Area {
         })
     }
 
-    /// Returns the squares of a grid from the picture's top left corner that overlap the area, row
-    /// by row. `side` is a square's side in pixels; squares are not cut off.
+    /// Divides the picture into a grid of squares of side `side`, in pixels, from its top left
+    /// corner on. Returns the squares that overlap the area, row by row. The squares are not
+    /// clipped.
     pub fn grid(self, side: u32) -> impl Iterator<Item = Self> {
         let starts = move |start: u32, length: u32| {
             (start - start % side..start + length).step_by(side as usize)
@@ -144,8 +146,8 @@ impl Area {
         Self::pixel(self.x + self.width / 2, self.y + self.height / 2)
     }
 
-    // The ends of the range are `u64`, because their sum may exceed `u32` for an area that a user
-    // has typed.
+    // The end of the range, the sum of a column and a width, may exceed `u32` for an area that a
+    // user has typed. The range is therefore in `u64`.
     fn columns(self) -> std::ops::Range<u64> {
         u64::from(self.x)..u64::from(self.x) + u64::from(self.width)
     }

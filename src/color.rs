@@ -26,7 +26,7 @@ impl Color {
 
     /// Returns the channels rounded to the nearest bytes; halves are rounded up.
     pub fn to_bytes(self) -> [u8; 3] {
-        // A channel lies in 0..=255, so the conversion only rounds.
+        // A channel lies in 0..=255, so the rounded channel always fits into a `u8`.
         self.srgb.map(|channel| channel.round() as u8)
     }
 
@@ -34,10 +34,10 @@ impl Color {
     pub fn to_linear(self) -> [f64; 3] {
         self.srgb.map(|channel| {
             if channel.fract() == 0.5 {
-                // Rounding errors of `srgb_to_linear` could make the light slightly too dark. A
-                // channel of 127.5 would then become the byte 127 in the picture, although
-                // `to_bytes` rounds it up to 128. `half_byte(127)` returns the least light that
-                // becomes the byte 128.
+                // This channel lies halfway between two bytes, `channel as u8` and the next one.
+                // `to_bytes` rounds it up. `srgb_to_linear` might return a light that is slightly
+                // too dark and is rounded down, so `half_byte` is used instead: it returns the
+                // least light that is rounded up.
                 half_byte(channel as u8)
             } else {
                 srgb_to_linear(channel / 255.0)
@@ -63,12 +63,12 @@ pub fn srgb_to_linear(encoded: f64) -> f64 {
     }
 }
 
-/// Returns the least linear light that is rounded to the byte `k` + 1 of sRGB, for `k` < 255. It is
-/// the least `f64` that is not below the light whose sRGB value is `k` + 1/2, in 8-bit steps.
+/// Returns the least linear light that is rounded to the byte `k` + 1 of sRGB, for `k` < 255. This
+/// is the light whose sRGB value is `k` + 1/2 in 8-bit steps, rounded up to an `f64`.
 ///
-/// Whether a light is below it can be decided with integers: the curve of sRGB raises a rational
-/// number x to the power 2.4, and a positive light L is less than x^2.4 exactly if L^5 is less than
-/// x^12.
+/// Whether an `f64` is below that light can be decided with integers. The curve of sRGB raises a
+/// rational number x to the power 2.4, and a positive L is less than x^2.4 exactly if L^5 is less
+/// than x^12.
 pub fn half_byte(k: u8) -> f64 {
     let mut light = srgb_to_linear((f64::from(k) + 0.5) / 255.0);
     while !is_below_half(light.next_down(), k) {
@@ -84,10 +84,10 @@ pub fn half_byte(k: u8) -> f64 {
 /// 1/2, in 8-bit steps. `light` must be positive and not subnormal.
 fn is_below_half(light: f64, k: u8) -> bool {
     // Bound on the relative rounding error of `difference` below. The difference is computed in
-    // double-doubles (sums of two `f64`), which decide most cases. Integers alone would take half
-    // the time of rendering a small picture. As multiples of the unit roundoff of a double-double,
-    // the relative errors are at most 4 for light^5, 11 for scale^12, 1 for the product of these,
-    // 11 for x^12, and 1 for the difference, in sum less than 32.
+    // double-doubles (sums of two `f64`), which decide most cases. If integers decided all cases,
+    // they would take half the time of rendering a small picture. As multiples of the unit roundoff
+    // of a double-double, the relative errors are at most 4 for light^5, 11 for scale^12, 1 for the
+    // product of these, 11 for x^12, and 1 for the difference, in sum less than 32.
     const ERROR: f64 = 32.0 * Double::UNIT;
     let squared = |x: Double| x.times(&x);
     let power_12 = |x: Double| squared(squared(squared(x).times(&x)));
@@ -112,24 +112,25 @@ fn is_below_half_exactly(light: f64, k: u8) -> bool {
     let significand = UBig::from(light.to_bits() & ((1 << 52) - 1) | 1 << 52);
     // Here, light = significand / 2^shift.
     let shift = 1075 - exponent;
-    // The sRGB value in half steps of 8 bits: black is 0, and white is 510.
+    // Twice the 8-bit value `k` + 1/2: the sRGB value on a scale from 0 (black) to 510 (white).
     let halves = 2 * u32::from(k) + 1;
-    // The straight piece of the curve ends at 0.04045, slightly more than 20 half steps.
+    // The straight piece of the curve ends at 0.04045 (of 1), i.e. at 20.6 of 510. A whole number
+    // `halves` therefore lies on the straight piece if it is at most 20.
     if halves <= 20 {
-        // On the straight piece, the test is L < c/12.92. Here L is the light and c = halves/510
-        // the sRGB value.
+        // On the straight piece, the test is L < c/12.92. Here L is the light, and c = halves/510
+        // is the sRGB value. Multiplied by 65892 = 5100·12.92, it becomes 65892·L < 10·halves.
         significand * 65_892u32 < UBig::from(10 * halves) << shift
     } else {
-        // On the curved piece, the test is L < x^2.4 for the light L. Here x = (c + 0.055)/1.055 =
-        // (1000·halves + 28050)/538050, and c = halves/510 is the sRGB value.
+        // On the curved piece, the test is L < x^2.4, i.e. L^5 < x^12. Here L is the light, x = (c
+        // + 0.055)/1.055 = (1000·halves + 28050)/538050, and c = halves/510 is the sRGB value.
         let x = UBig::from(1000 * halves + 28_050);
         significand.pow(5) * UBig::from(538_050u32).pow(12) < x.pow(12) << (5 * shift)
     }
 }
 
-/// Encodes one channel of linear light, from 0 to 1, as sRGB, from 0 to 1. This is the inverse of
-/// [`srgb_to_linear`]. Below 0, the straight piece of the curve is continued, and above 1, the
-/// power function.
+/// Encodes one channel of linear light, from 0 to 1, as sRGB, from 0 to 1; inverts
+/// [`srgb_to_linear`]. A light below 0 is encoded by the straight piece of the curve, and a light
+/// above 1 by the power function.
 pub fn linear_to_srgb(light: f64) -> f64 {
     if light <= 0.04045 / 12.92 {
         12.92 * light

@@ -63,12 +63,12 @@ pub struct Diagnostic {
     pub help: Option<String>,
     /// Places that explain the problem; the first one is the primary label.
     pub labels: Vec<Label>,
-    /// The fixes, the most probable one first.
+    /// Suggested edits of the scene that solve the problem, the most probable one first.
     pub fixes: Vec<Fix>,
     /// Whether the text at the primary label is superfluous. Editors show such text in grey.
     pub is_needless: bool,
-    /// Whether the problem is a violation of the grammar, regardless of what the names in the text
-    /// mean.
+    /// Whether the problem is a violation of the grammar, rather than a wrong name or value. If a
+    /// scene has such problems, the formatter reports only these.
     pub is_of_syntax: bool,
 }
 
@@ -89,7 +89,8 @@ impl Diagnostic {
     }
 }
 
-/// Sorts diagnostics by their primary labels: those in the file before those in `--set` arguments.
+/// Sorts diagnostics by the place of their primary label. Diagnostics of the file come before
+/// diagnostics of `--set` arguments.
 pub fn sort(diagnostics: &mut Vec<Diagnostic>) {
     sort_by_span(diagnostics, |diagnostic| {
         let first = diagnostic.labels.first();

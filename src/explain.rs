@@ -16,10 +16,10 @@ pub const SAMPLING: &str = include_str!("../grammar/sampling.md");
 /// upwards.
 pub const LEFT_HANDED: &str = include_str!("../grammar/left_handed.md");
 
-/// Words that other programs use, and where Pinhole explains what they mean. A row holds several
-/// such words, separated by commas. Then it holds either a word of the language or a heading of the
-/// language's reference. A heading may be followed by `: ` and the first words of an item or
-/// paragraph in its section.
+/// Words that other programs use, and where Pinhole explains their meaning. The first text of a row
+/// is a list of such words, separated by commas. The second text is a word of the language or a
+/// heading of the language's reference. A heading may be followed by `: ` and the first words of an
+/// item or paragraph in its section.
 const OTHER_NAMES: &[(&str, &str)] = &[
     ("loop, repeat, array, index, for loop", "repetition"),
     ("group, move, translate, scale", "limits: A group"),
@@ -184,7 +184,7 @@ impl Page {
     }
 }
 
-/// Defines `GROUPS`. Each line has a subject and the codes of its pages.
+/// Defines `GROUPS`. Each line of the input consists of a subject and the codes of its pages.
 macro_rules! groups {
     ($($name:literal: $($code:ident)*;)*) => {
         /// All pages, grouped by subject.

@@ -33,7 +33,7 @@ pub struct Inspection {
     pub total: u64,
     /// Seed of the random numbers for the samples.
     pub seed: u64,
-    /// Vanishing point of the lines parallel to the world's x, y and z axes, in pixels from the
+    /// Vanishing points of the lines parallel to the world's x, y and z axes, in pixels from the
     /// picture's top left corner. `None` for an axis that is parallel to the view plane.
     pub vanishing_points: [Option<[f64; 2]>; 3],
     /// Properties of the objects, in file order.
@@ -89,8 +89,8 @@ pub struct ObjectFacts {
 }
 
 impl ObjectFacts {
-    /// Returns the object's name. If it has none, returns the indices that distinguish it from
-    /// other objects of the same block, or `-`.
+    /// Returns the object's name. If it has no name, returns the indices that distinguish it from
+    /// other objects of the same block; if it has no indices either, returns `-`.
     fn shown_name(&self) -> Cow<'_, str> {
         match (&self.name, &*self.indices) {
             (Some(name), _) => Cow::Borrowed(name),
@@ -186,10 +186,10 @@ fn camera_facts(camera: &Camera, image: &Image, basis: &Basis) -> CameraFacts {
 /// left corner. Returns `None` if the axis is parallel to the view plane.
 fn vanishing_point(image: &Image, basis: &Basis, axis: usize) -> Option<[f64; 2]> {
     // The camera's axis w is opposite to the view direction. Its component along the given axis is
-    // 0 exactly if the given axis is parallel to the view plane. Otherwise, a ray along the given
-    // axis a has the direction (a·u, a·v, −a·w) in the camera's axes u, v and −w. Scaled to depth 1
-    // and divided by a pixel's side at this depth, its first two coordinates are the distances of
-    // the vanishing point from the picture's middle.
+    // 0 exactly if the given axis is parallel to the view plane. A ray along the given axis a has
+    // the coordinates (a·u, a·v, −a·w) in the camera's axes u, v and −w. Dividing the first two
+    // coordinates by the third and by a pixel's side at depth 1 gives the distances of the
+    // vanishing point from the picture's middle, in pixels.
     if basis.w[axis].is_zero() {
         return None;
     }
@@ -205,8 +205,8 @@ fn rounded(x: &Big) -> f64 {
     x.to_finite() + 0.0
 }
 
-/// Totals of the objects that the readable output does not list one by one, which are those after
-/// the first [`LISTED`].
+/// Totals of the objects after the first [`LISTED`]. The readable output does not list these
+/// objects one by one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Rest {
     objects: u64,
@@ -261,7 +261,7 @@ impl fmt::Display for Inspection {
     }
 }
 
-/// Output about what is visible of the objects.
+/// The readable output's text about the areas in which the objects are visible.
 impl Inspection {
     /// Returns the totals of the objects after the first [`LISTED`], which are not listed one by
     /// one. Returns `None` if there are no such objects.

@@ -16,42 +16,43 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! - [`Scene::parse`] returns the scene, or all [`Mistakes`] of the text, each a [`Diagnostic`]
-//!   with its places and fixes. [`Scene::diagnostics`] has the warnings.
+//! - [`Scene::parse`] returns the scene, or all [`Mistakes`] of the text. Each of them is a
+//!   [`Diagnostic`] with its places and fixes. [`Scene::diagnostics`] returns the warnings.
 //! - [`Scene::render`] samples as the scene says; [`Scene::render_exact`] computes each pixel's
-//!   mean with a bound on its error. [`Picture`] has bytes, linear light and files.
+//!   mean with a bound on its error. A [`Picture`] returns its pixels as bytes or in linear light,
+//!   and is saved to a file.
 //! - [`Picture::rmse`] says how much two pictures differ, and [`Scene::grade`] what is wrong with
 //!   the picture of another program.
-//! - [`Scene::data`] is what the text means, as plain data. Change a copy, and
-//!   [`Scene::from_data`] checks it and makes a scene of it, with a text of its own.
+//! - [`Scene::data`] returns what the text means, as plain data. [`Scene::from_data`] checks a
+//!   changed copy of the data, and makes a scene from it, whose text is generated.
 //!
 //! # Features
 //!
-//! Without any feature, the library reads a text, renders to memory and computes exact pictures,
-//! and has problems and answers as data. The default is everything. To leave out what only the
-//! program needs, depend on it with `default-features = false` and the features that you use:
+//! Without any feature, the library reads a text, renders to memory, computes exact pictures, and
+//! returns problems and answers as data. By default, all features are enabled. To compile only what
+//! you use, depend on the library with `default-features = false` and list its features:
 //!
 //! | feature | what it adds |
 //! | --- | --- |
 //! | `png` | PNG files, which carry their scene: `Picture::save`, `film::write_png` |
 //! | `exr` | OpenEXR files in linear light: `Picture::save`, `film::write_exr` |
-//! | `read` | pictures of any program: `Picture::open`, `Scene::grade`; has `png` and `exr` |
+//! | `read` | pictures of any program: `Picture::open`, `Scene::grade`; includes `png` and `exr` |
 //! | `fancy` | [`Mistakes`] and `diagnostic::Report` with excerpts, as a terminal shows them |
 //! | `json` | problems as lines of JSON: `diagnostic::json_lines` |
 //! | `report` | reports on accuracy and on speed: `report` |
 //! | `lsp` | the answers that editors ask for, and the language server: `editor`, `lsp` |
-//! | `preview` | notices that a scene's file was changed |
+//! | `preview` | notification when a scene's file is changed |
 //! | `studio` | the host of the page on which scenes are edited |
-//! | `cli` | the program, which has `fancy`, `preview`, `read` and `report` |
-//! | `files`, `pages` | parts of the others, of no use alone |
+//! | `cli` | the command line; includes `fancy`, `preview`, `read` and `report` |
+//! | `files`, `pages` | parts of other features, not useful alone |
 //!
 //! # Stages
 //!
-//! The modules below are for those who need a part of a picture, its progress, or an end to it
-//! before it is done; answers about a scene; or a text that is being typed. They stand in groups,
-//! roughly in the order in which a scene becomes a picture. A group imports only groups before it,
-//! and modules of one group never import each other in a circle; a test checks this. The whole
-//! pipeline:
+//! The modules below serve programs that render only a part of a picture, show the progress of a
+//! render or cancel it, ask questions about a scene, or work on a text while it is typed. They are
+//! listed in groups, roughly in the order in which a scene becomes a picture. A group imports only
+//! earlier groups, and modules of one group never import each other in a circle; a test checks
+//! this. The whole pipeline:
 //!
 //! ```
 //! use pinhole::{area::Area, film, render, sampling::Sampling, scene, source::*, tracer::World};
@@ -68,33 +69,33 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! - [`source`] has texts and positions in them. [`diagnostic`] has the problems of a text, a list
-//!   that the terminal, JSON and editors show alike, and [`explain`] a page for each kind of
-//!   problem.
-//! - [`schema`] has the facts of the language: blocks, fields and names. [`syntax`] parses a text
-//!   into a tree, and cannot fail. [`scene`] lowers the tree to plain data with everything
-//!   resolved.
+//! - [`source`] contains texts and positions in them. [`diagnostic`] contains the problems of a
+//!   text, which terminals, JSON and editors show alike. [`explain`] contains a page for each kind
+//!   of problem.
+//! - [`schema`] defines the blocks, fields and names of the language. [`syntax`] parses a text into
+//!   a tree, and never fails. [`scene`] converts the tree to plain data, in which all names are
+//!   resolved and all values are computed.
 //! - [`tracer`] finds exactly what is seen at a point of the picture; its documentation says how.
 //!   [`sampling`] places the sample points of pixels, [`render`] averages what is seen at them, or
 //!   computes means without samples, and [`refine`] shows coarse pictures until the final one is
 //!   done.
 //! - [`cancel`]: a flag ends any of these computations early.
 //! - [`film`] converts means to bytes, and encodes and decodes files.
-//! - [`mod@format`] lays a text out canonically.
+//! - [`mod@format`] writes a text in the canonical layout.
 //! - [`inspect`], [`seen`] and [`probe`] answer questions about a scene, [`grading`] finds the
 //!   mistakes in a picture of a scene, and `report` measures how accurate and how fast Pinhole
 //!   itself is.
 //! - [`editor`] answers questions while a scene is written: completions, explanations of words,
 //!   uses of names. `lsp` serves these answers to editors by the Language Server Protocol.
-//! - [`figure`] draws what the program knows of a scene for a page of a course, as SVG.
+//! - [`figure`] draws figures of a scene for teaching material, as SVG.
 //!
-//! Modules that are not listed are the program's own. `library` is the front that this page begins
-//! with. `math`, `numbers`, `suggest`, `threads` and `files` are below all stages. `reference` has
-//! what the tracer is compared with: textbook formulas in `f64`, an oracle of arbitrary precision,
-//! and hard scenes. `projection` maps points of the scene to the picture and back, in rounded
-//! numbers, and `exact` integrates a pixel. `preview` notifies of a file's changes, and `studio`
-//! serves a page to edit a scene. `cli`, the command line, reads input, calls all of these and
-//! prints; the binary does nothing else.
+//! The other modules are internal to Pinhole. `library` contains the types with which this page
+//! begins. `math`, `numbers`, `suggest`, `threads` and `files` may be used by every stage.
+//! `reference` contains what the tracer is tested against: textbook formulas in `f64`, formulas
+//! with arbitrary precision, and hard scenes. `projection` maps points of the scene to the picture
+//! and back, in rounded numbers, and `exact` integrates a pixel. `preview` reports changes of a
+//! file, and `studio` serves a page to edit a scene. `cli`, the command line, reads input, calls
+//! the other modules and prints the results.
 
 pub mod area;
 pub mod cancel;
@@ -156,7 +157,7 @@ pub mod figure;
 #[cfg(feature = "lsp")]
 #[doc(hidden)]
 pub mod lsp;
-// A browser watches no files.
+// In a browser, there are no files to watch, so WebAssembly omits this module.
 #[cfg(all(feature = "preview", not(target_family = "wasm")))]
 #[doc(hidden)]
 pub mod preview;

@@ -1,7 +1,7 @@
 //! Locks that can be used after a panic.
 //!
-//! A lock is poisoned if a thread panics while it holds the lock. In this crate, values behind
-//! locks are changed in steps that each leave them valid, so they can be used afterwards.
+//! A lock is poisoned if a thread panics while it holds the lock. Every change of a locked value in
+//! this crate leaves the value valid, so the value can still be used after a panic.
 
 use std::sync::{LockResult, Mutex, MutexGuard, PoisonError};
 

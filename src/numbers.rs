@@ -15,8 +15,8 @@ pub fn short(x: f64) -> String {
         };
         return format!("{}e{exponent}", trimmed(digits));
     }
-    // For 10^−4 ≤ |x| < 10^6, six significant digits are 5 − ⌊log10 |x|⌋ decimals. Larger numbers
-    // get no decimals.
+    // Finds the number of decimals for six significant digits: 5 − ⌊log10 |x|⌋ for |x| < 10^6, and
+    // 0 for larger numbers. The search begins at |x| from 1 to below 10, i.e. with 5 decimals.
     let mut decimals = 5;
     let mut bound = 10.0;
     while x.abs() >= bound && decimals > 0 {
@@ -44,8 +44,9 @@ pub fn at_most(bound: f64) -> String {
     let text = format!("{bound:.1e}");
     let is_less = text.parse().is_ok_and(|read: f64| read < bound);
     match text.split_once('e') {
-        // If the rounded text is below the bound, 1 is added to its last digit. The sum of two
-        // numbers with one decimal each is correct after formatting with one decimal.
+        // If the rounded text is below the bound, 1 is added to its last digit. Its first digits
+        // are a number with one decimal, so 0.1 is added, and the sum is again formatted with one
+        // decimal.
         Some((digits, exponent)) if is_less => {
             let next = digits.parse().map_or(bound, |digits: f64| digits + 0.1);
             let carried: f64 = format!("{next:.1}e{exponent}").parse().unwrap_or(bound);
@@ -55,8 +56,9 @@ pub fn at_most(bound: f64) -> String {
     }
 }
 
-/// Formats a number that a reader compares with the numbers `others`. Uses the form of [`short`],
-/// or all digits if the short form compares differently with one of them.
+/// Formats a number so that a reader can compare it with the numbers `others`. Uses the form of
+/// [`short`] if it preserves the order (less, equal or greater) to each of the others. Otherwise,
+/// uses all digits.
 pub fn beside(x: f64, others: &[f64]) -> String {
     let text = short(x);
     let read = text.parse().unwrap_or(x);

@@ -1,5 +1,5 @@
-//! Replacement of `threads.rs` for targets without threads, such as browsers. The calling thread
-//! does all work. It does so without rayon, which would make the program larger and no faster.
+//! Takes the place of `threads.rs` on targets without threads, such as browsers. The calling thread
+//! does all work. Rayon is not used: without threads, it would only make the program larger.
 
 use std::num::NonZero;
 

@@ -1,4 +1,4 @@
-//! All surfaces that one ray hits.
+//! Finds all surfaces that the ray through one point of the picture hits.
 
 #[cfg(feature = "json")]
 mod json;
@@ -14,8 +14,8 @@ use crate::{
     tracer::{Hit, World, ray},
 };
 
-/// The output of `pinhole probe`: the ray through a point of the picture, and all its crossings
-/// with surfaces. Every number is the correctly rounded exact value.
+/// The output of `pinhole probe`: the ray through a point of the picture, and all intersections of
+/// the ray with surfaces. Every number is the correctly rounded exact value.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Probe {
@@ -33,13 +33,13 @@ pub struct Probe {
     pub color: Color,
 }
 
-/// Follows the ray through the point `pixel` of the picture plane, in pixels from the picture's top
-/// left corner.
+/// Traces the ray through the point `pixel` of the picture plane, given in pixels from the
+/// picture's top left corner.
 ///
 /// # Panics
 ///
 /// Panics if the scene was made in code rather than read from a text, and breaks a condition of the
-/// language. [`Scene::check`] finds this out.
+/// language. [`Scene::check`] finds such scenes.
 pub fn probe(scene: &Scene, pixel: DVec2) -> Probe {
     let half = DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height)) / 2.0;
     let world = World::for_rays(scene, (pixel - half).abs());

@@ -9,7 +9,7 @@ use crate::{
     tracer::Basis,
 };
 
-/// Eye, axes and pixel size of a camera in `f64`, by which points are projected.
+/// Projection by a camera: its eye, its axes and the size of its pixels, in `f64`.
 #[derive(Clone, Copy, Debug)]
 pub struct Projection {
     /// Position of the eye, in world coordinates.
@@ -45,8 +45,8 @@ impl Projection {
     /// projections per second.
     pub fn quick(camera: &Camera, image: &Image) -> Self {
         let [right, top, backward] = formulas::axes(camera);
-        // If lengths exceed the range of `f64`, the textbook formulas give no axes, and the exact
-        // ones are used.
+        // If a length exceeds the range of `f64`, the textbook formulas give axes that are not
+        // finite. The exact axes are then used.
         if !(right + top).is_finite() {
             return Self::new(camera, image);
         }
@@ -81,8 +81,8 @@ impl Projection {
         across / (self.depth(point) * self.pitch) + self.size / 2.0
     }
 
-    /// Returns the vector from the eye, along the ray through a point of the picture, to the point
-    /// at depth 1. The point of the picture is given in pixels from the top left corner.
+    /// Returns the point at depth 1 on the ray through `point`, relative to the eye. `point` is a
+    /// point of the picture, in pixels from the top left corner.
     pub fn ray(&self, point: DVec2) -> DVec3 {
         let across = (point - self.size / 2.0) * self.pitch;
         self.ahead + self.right * across.x - self.top * across.y
@@ -93,9 +93,9 @@ impl Projection {
         self.eye + self.ray(point) * depth
     }
 
-    /// Intersects the ray through the point `at` of the picture with the plane through the world
-    /// point `through` that is perpendicular to `normal`. Returns `None` if the intersection is not
-    /// in front of the eye or not finite.
+    /// Intersects the ray through the point `at` of the picture with a plane. The plane contains
+    /// the world point `through` and is perpendicular to `normal`. Returns `None` if the
+    /// intersection is not in front of the eye or not finite.
     pub fn on_plane(&self, at: DVec2, through: DVec3, normal: DVec3) -> Option<DVec3> {
         let ray = self.ray(at);
         let depth = (through - self.eye).dot(normal) / ray.dot(normal);

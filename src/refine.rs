@@ -1,8 +1,9 @@
 //! Coarse pictures that become finer step by step, for a preview.
 //!
-//! In: the prepared scene. Out: pictures in blocks, one after the other. A block shows the colour
-//! at its centre, so that only colours of the scene are shown. The preview decides when to continue
-//! with the full picture (`render`), and when to stop because the scene has changed.
+//! In: the prepared scene. Out: pictures that consist of square blocks, each picture with smaller
+//! blocks than the one before. A block shows the colour at its centre, so that only colours of the
+//! scene are shown. The preview decides when to continue with the full picture (`render`), and when
+//! to stop because the scene has changed.
 
 use std::sync::{Mutex, atomic::Ordering};
 
@@ -108,9 +109,9 @@ pub fn coarse(
 
 /// Returns the colour that is seen at the centre of a block, by its index in the scene's palette.
 fn at_center(world: &World, block: Area) -> usize {
-    // A block with an odd number of pixels along a side has its centre in a pixel. With an even
-    // number, the centre is on the edge between two pixels, and is given as the left or top edge of
-    // the second.
+    // Along a side with an odd number of pixels, the centre lies in the middle of a pixel.
+    // Otherwise, it lies between two pixels. It is then given as a point of the second pixel: half
+    // a pixel to the left of, or above, this pixel's middle, so the offset is −0.5.
     let place = |start: u32, length: u32| match length % 2 {
         0 => (start + length / 2, -0.5),
         _ => (start + length / 2, 0.0),

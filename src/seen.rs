@@ -1,9 +1,9 @@
 //! What is seen of each object of a scene.
 //!
 //! In: a scene. Out: for each object its rectangle in the picture and the area that shows it, or
-//! the reason why it is not seen. The areas are computed by exact integration. Where this would
-//! take too much work, each pixel counts as showing the object at its centre, and the result says
-//! so.
+//! the reason why it is not seen. The areas are computed by exact integration. If this would take
+//! too much work, only the object at the centre of each pixel is determined, the whole pixel is
+//! added to this object's area, and the areas are reported as inexact.
 
 use std::{cell::OnceCell, collections::BTreeMap};
 
@@ -17,14 +17,14 @@ use crate::{
 };
 use glam::DVec2;
 
-/// Maximum work on a whole picture, in units of about 50 ns, i.e. about 5 s in all. Each tile has
-/// an equal share. After a tile's share is used up, a pixel counts as showing only what is seen at
-/// its centre. With a larger maximum, the areas would be exact for more scenes, but the answer
-/// could take longer.
+/// Maximum work on a whole picture, in units of about 50 ns, i.e. about 5 s in all. It is shared
+/// equally among the tiles into which the picture is divided. When a tile's share is used up, each
+/// remaining pixel is attributed to the object at its centre. With a larger maximum, the areas
+/// would be exact for more scenes, but the answer could take longer.
 const MAX_WORK: u64 = 100_000_000;
 
-/// Minimum area, in pixels, for which an object counts as seen. Printed areas have the same
-/// precision, so a smaller area would be printed as 0.
+/// Minimum visible area, in pixels, for which an object is reported as seen. Areas are printed to
+/// this precision, so a smaller area could be printed as 0.
 pub const MIN_AREA: f64 = 1e-6;
 
 /// What is seen of an object.
@@ -38,8 +38,9 @@ pub enum Visibility {
     Outside(Outside),
     /// At the object's centre, another object is seen, given by its index in the file.
     HiddenBy(usize),
-    /// Nothing of the object is seen for another reason. It may be hidden by several others, too
-    /// thin, or outside of the picture although its bounding sphere is not.
+    /// Nothing of the object is seen for another reason. For instance, several objects together
+    /// hide it, or it is too thin, or it is outside of the picture although its bounding sphere is
+    /// not.
     Nothing,
 }
 
@@ -49,7 +50,7 @@ pub enum Visibility {
 /// # Panics
 ///
 /// Panics if the scene was made in code rather than read from a text, and breaks a condition of the
-/// language. [`Scene::check`] finds this out.
+/// language. [`Scene::check`] finds such scenes.
 pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
     let world = World::by_object(scene);
     let tiles: Vec<Area> = world.picture().tiles(2 * GRID).collect();
@@ -59,7 +60,7 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
         let integrator = Integrator::for_values(&world, |_| []).with_work_limit(most_work);
         let is_exact = integrator.shares(*tile, |area, shares| {
             for &(object, share) in shares {
-                // A smaller part of the tile may be a rounding error, so it is ignored.
+                // A share of at most 1e-9 of the tile may be a rounding error, so it is ignored.
                 if share > 1e-9 && object != world.background() {
                     add(&mut areas, object, (area, area.pixels() as f64 * share));
                 }
@@ -96,8 +97,8 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
 }
 
 /// Maximum number of objects that the readable output of `inspect` lists. For each listed object
-/// that is hidden, it also names the object in front. A list of many more objects would hardly be
-/// read by a person; the JSON output contains all objects.
+/// that is hidden, the output also names the object in front. A list of many more objects would
+/// hardly be read by a person; the JSON output contains all objects.
 pub const LISTED: usize = 100;
 
 /// Map from an object's index to the bounding rectangle of its pixels and to the area that shows

@@ -27,9 +27,9 @@ pub enum SourceId {
 pub struct Span {
     /// The source of the span.
     pub source: SourceId,
-    /// First byte.
+    /// Offset of the first byte.
     pub start: usize,
-    /// One past the last byte.
+    /// Offset after the last byte.
     pub end: usize,
 }
 
@@ -57,8 +57,8 @@ impl Span {
 
 /// Sorts a list by the spans of its elements; elements with equal spans keep their order.
 ///
-/// A non-generic function sorts the indices. A sort for each element type would enlarge the code
-/// that a browser loads by a fiftieth.
+/// The sorting itself is done by a function that is not generic. If it were compiled for each
+/// element type, the code that a browser loads would be about 2 % larger.
 pub fn sort_by_span<T>(list: &mut Vec<T>, span: impl Fn(&T) -> Span) {
     let order = order(&list.iter().map(span).collect::<Vec<_>>());
     let mut taken: Vec<Option<T>> = list.drain(..).map(Some).collect();
@@ -134,9 +134,9 @@ impl Sources {
 /// A line and a column, both counted from 1; columns count characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct LineColumn {
-    /// The line.
+    /// The line, counted from 1.
     pub line: usize,
-    /// The column.
+    /// The column, in characters, counted from 1.
     pub column: usize,
 }
 
@@ -149,7 +149,7 @@ pub struct Source {
     lines: OnceLock<Lines>,
 }
 
-/// Texts are equal if their names and bytes are.
+/// Two sources are equal if their names and their bytes are equal.
 impl PartialEq for Source {
     fn eq(&self, other: &Self) -> bool {
         let (own, others) = ((&self.text, &self.invalid), (&other.text, &other.invalid));
@@ -251,8 +251,9 @@ impl Source {
         self.lines().line(self.floor_char_boundary(offset)) + 1
     }
 
-    /// Returns line and column of an offset. A byte order mark takes no column. An offset beyond
-    /// the end is treated as the end, and an offset within a character as the character's start.
+    /// Returns the line and column of an offset. A byte order mark is not counted as a column. An
+    /// offset beyond the end is treated as the end, and an offset within a character as the
+    /// character's start.
     pub fn place(&self, offset: usize) -> LineColumn {
         let line = self.line(offset);
         let offset = self.floor_char_boundary(offset);
@@ -264,8 +265,8 @@ impl Source {
         }
     }
 
-    /// Returns the index with which lines and columns of offsets are found: the starts of the
-    /// lines, and the characters with more than one byte. It is computed on first use.
+    /// Returns the tables from which the line and column of an offset are computed. They are made
+    /// on first use.
     #[doc(hidden)]
     pub fn lines(&self) -> &Lines {
         self.lines.get_or_init(|| Lines::new(&self.text))

@@ -56,7 +56,8 @@ pub fn nearest_name<'c>(
 /// Returns whether `written` surely means `near`, the nearest candidate, because no other candidate
 /// is equally near. Returns `false` in any case if
 ///
-/// - the digits of the two names differ, since the name is then a different one;
+/// - the digits of the two names differ, because names such as `a1` and `a2` are different names
+///   rather than misspellings;
 /// - `written` has several words whose letters are not exactly those of `near`;
 /// - `written` is `near` followed by three or more letters.
 pub fn is_only_near<'c>(
@@ -70,7 +71,8 @@ pub fn is_only_near<'c>(
     let letters = |name: &str| name.replace(|c: char| !c.is_ascii_alphanumeric(), "");
     let digits = |name: &str| name.replace(|c: char| !c.is_ascii_digit(), "");
     let near_letters = letters(near).to_ascii_lowercase();
-    // The letters after the name may be a value that was joined to it, as in `colorred`.
+    // Letters after the name may be a value that was joined to it, as in `colorred`. The name alone
+    // is then not what was meant.
     let is_longer = written.starts_with(near) && written.len() >= near.len() + 3;
     if is_longer
         || digits(&written) != digits(near)
@@ -95,7 +97,8 @@ fn nearest_of<'c>(written: &str, candidates: &mut dyn Iterator<Item = &'c str>) 
     let mut best: Option<(usize, &str)> = None;
     for candidate in candidates {
         let other = candidate.chars().count();
-        // One letter in three may differ, but not more than half of the shorter name's letters.
+        // The number of typing errors allowed is a third of the longer name's length, but at least
+        // one, and at most half of the shorter name's length.
         let allowed = (length.max(other) / 3).max(1).min(length.min(other) / 2);
         if length.abs_diff(other) > allowed || best.is_some_and(|(least, _)| least == 0) {
             continue;

@@ -57,7 +57,7 @@ pub(crate) enum Threads {
 
 impl Threads {
     /// Returns `threads` threads, or the available number if `threads` is `None`. Returns the
-    /// current threads if their number is right, or if the system cannot start others.
+    /// current threads if their number is the requested one, or if the system cannot start others.
     ///
     /// # Errors
     ///
@@ -71,9 +71,9 @@ impl Threads {
     }
 
     /// Returns the pool that was built. If building failed, for instance because too many threads
-    /// are running, returns the current threads. Outside of a pool, returns a pool of the calling
-    /// thread alone, because rayon would otherwise permanently treat this thread as a pool of its
-    /// own.
+    /// are running, returns the current threads. If the calling thread does not belong to a pool,
+    /// returns a pool of the calling thread alone, because rayon would otherwise permanently treat
+    /// this thread as a pool of its own.
     fn started(built: Result<ThreadPool, ThreadPoolBuildError>) -> Result<Self, NoThreads> {
         match built {
             Ok(pool) => Ok(Self::Started(pool)),

@@ -1,11 +1,11 @@
-//! CPU time of the process, i.e. the time that processors spend on it. Other work on the machine
-//! affects it less than elapsed time.
+//! CPU time of the process: the time for which processors execute it. Other programs on the machine
+//! affect CPU time less than elapsed time.
 
 #[cfg(unix)]
 use rustix::time::{ClockId, clock_gettime};
 
-/// Returns the time, in seconds, that processors have spent so far on all threads of the process,
-/// both in the program and in the system.
+/// Returns the CPU time of the process so far, in seconds: user and system time, summed over all
+/// threads.
 #[cfg(unix)]
 pub fn cpu_seconds() -> f64 {
     let time = clock_gettime(ClockId::ProcessCPUTime);

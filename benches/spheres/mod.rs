@@ -109,8 +109,8 @@ pub fn crowd(count: usize) -> String {
     text
 }
 
-/// Returns the text of a scene of `count` spheres in an upright cube within the picture. The areas
-/// of the spheres' discs add up to one and a half times the area of a face of the cube.
+/// Returns the text of a scene whose `count` spheres fill a cube. The camera sees the whole cube.
+/// The cross sections of the spheres add up to one and a half times the area of a face of the cube.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 pub fn cube(count: usize) -> String {
     const COVERED: f64 = 1.5;

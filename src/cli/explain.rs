@@ -355,8 +355,8 @@ mod tests {
         for (name, meant) in explain::other_names() {
             match meant.split_once(": ") {
                 None => assert_eq!(page(name).unwrap(), page(meant).unwrap(), "{name}"),
-                // If a name of another program stands for a part of a page, only the lines about it
-                // are printed.
+                // If another program's name means only a part of a page, such as one field, only
+                // the lines about this part are printed.
                 Some((_, words)) => {
                     let page = page(name).unwrap();
                     let lines: Vec<&str> = page.lines().collect();

@@ -131,8 +131,8 @@ impl SceneInput {
     }
 
     fn add(&mut self, overrides: &Overrides) {
-        // Overrides are numbered as on the command line. Those that are stored in a picture do not
-        // count.
+        // Overrides are numbered as on the command line. Overrides that are stored in a picture
+        // have no number there, so they are skipped.
         let sets = (1..).zip(&overrides.sets);
         let sets = sets.map(|(number, set)| Source::from_text(format!("--set #{number}"), set));
         self.sources.sets.extend(sets);
@@ -281,8 +281,8 @@ pub enum IfNotPicture {
     ReadStart,
 }
 
-/// Reads a scene's file. Of a PNG, which may contain a scene, only the start is read. Fails unless
-/// the path is a regular file.
+/// Reads a scene's file. If it is a PNG, which may contain a scene, only its start is read. Fails
+/// unless the path is a regular file.
 pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     limited(files::open(path)?)
 }
@@ -303,7 +303,7 @@ fn opened(path: &Path) -> io::Result<(Box<dyn Read>, Option<u64>)> {
     Ok((Box::new(file), length.map(|found| found.len())))
 }
 
-/// Reads a scene's text. Of a PNG, which may contain a scene, only the start is read.
+/// Reads a scene's text. If it is in a PNG, only the start of the PNG is read.
 fn limited(mut from: impl Read) -> io::Result<Vec<u8>> {
     let start = files::read_from(from.by_ref().take(START), START)?;
     let is_picture = start.starts_with(&SIGNATURE);

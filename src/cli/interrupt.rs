@@ -13,8 +13,8 @@ use super::{Status, Trouble, trouble};
 
 /// Record of Ctrl-C, or of a signal that asks the process to end.
 ///
-/// Ctrl-C ends the process at once, unless a command has called [`watch`](Self::watch) because it
-/// has to clean up first. Even then, pressing Ctrl-C again after [`GRACE`] ends the process.
+/// Ctrl-C ends the process at once, unless a command watches for it because it has to clean up
+/// first. Even then, pressing Ctrl-C again after two seconds ends the process.
 #[derive(Clone, Default)]
 pub struct Interrupt(Arc<Flags>);
 
@@ -41,7 +41,7 @@ impl Interrupt {
     }
 
     /// Records Ctrl-C. Ends the process if no command watches for it, or if this is a further
-    /// Ctrl-C and the command has not ended within [`GRACE`].
+    /// Ctrl-C and the command has not ended within two seconds.
     pub fn press(&self) {
         let flags = &self.0;
         flags.pressed.store(true, Ordering::SeqCst);

@@ -21,14 +21,14 @@ pub fn picture(bytes: &[u8], large: &LargeArgs) -> Result<Picture, String> {
     })
 }
 
-/// Returns the area of the scene that a picture shows. This is the crop that the picture's file
-/// contains, or the crop `named` on the command line, or the whole scene. A crop counts only if it
-/// has the picture's size.
+/// Returns the area of the scene that a picture shows: the crop that the picture's file contains,
+/// or the crop `named` on the command line, or the whole scene. A crop whose size differs from the
+/// picture's is ignored.
 ///
 /// # Errors
 ///
-/// No area has the picture's size, or the crop lies outside of the scene. The message is the end of
-/// a sentence that begins with the picture's name.
+/// Neither the crop nor the whole scene has the picture's size, or the crop lies outside of the
+/// scene. The message is the end of a sentence that begins with the picture's name.
 pub fn part(picture: &Picture, scene: &Scene, named: Option<Area>) -> Result<Area, String> {
     let [width, height] = [picture.film.width(), picture.film.height()];
     let whole = Area::whole(scene.image.width, scene.image.height);

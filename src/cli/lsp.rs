@@ -15,7 +15,7 @@ pub fn run() -> Result<Status, Trouble> {
     match stdio::serve(server, io::stdin(), &mut io::stdout().lock(), log) {
         Ok(true) => Ok(Status::Done),
         // The Language Server Protocol requires exit status 1 if the client sends `exit` without
-        // `shutdown`.
+        // `shutdown`. `SceneErrors` has this status.
         Ok(false) => Ok(Status::SceneErrors),
         Err(error) => Err(trouble(format!("cannot write to standard output: {error}"))),
     }

@@ -100,10 +100,9 @@ fn command(command: Command, interrupt: &Interrupt) -> Result<Status, Trouble> {
     }
 }
 
-/// Returns clap's error or help text with control characters made visible. The text repeats
-/// arguments, and their control characters must not reach the terminal. Therefore, the arguments
-/// are parsed again after their control characters are replaced. Returns `None` if clap accepts the
-/// replaced arguments.
+/// Parses the arguments again, after making their control characters visible, and returns clap's
+/// error or help text. This text repeats arguments, and their control characters must not reach the
+/// terminal. Returns `None` if clap accepts the changed arguments.
 fn visible_answer(args: Vec<OsString>) -> Option<clap::Error> {
     let shown = |argument: OsString| visible_line(&argument.to_string_lossy()).into_owned();
     Args::try_parse_from(args.into_iter().map(shown)).err()
@@ -163,8 +162,8 @@ impl From<Status> for ExitCode {
     }
 }
 
-/// Returns the exit status of a command that has ended. Prints its error message, if there is one
-/// that was not yet printed.
+/// Returns the exit status of a command that has ended. Prints its error message, except for errors
+/// of the scene, which were already printed, and for Ctrl-C.
 fn status_of(done: Result<Status, Trouble>) -> Status {
     match done {
         Ok(status) => status,

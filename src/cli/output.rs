@@ -121,8 +121,8 @@ pub fn wrapped(text: &str, width: usize) -> String {
 }
 
 /// Returns the offset at which the last column of a table's row starts. A column starts after at
-/// least two spaces. Columns that start after the offset `most` do not count. If there is no
-/// column, returns 2, or `most` if that is less.
+/// least two spaces. Columns that start after the offset `most` are ignored. If no column is left,
+/// returns 2, or `most` if that is less.
 fn last_column(line: &str, most: usize) -> usize {
     let letters: Vec<char> = line.chars().take(most + 1).collect();
     let starts = letters.windows(3).enumerate();

@@ -66,9 +66,9 @@ impl RenderedPicture {
     }
 }
 
-/// Precision in which pixels are kept in memory. Lower precision takes less memory. It is as low as
-/// the file format allows, unless the picture is also shown in the terminal, which needs 64-bit
-/// floats.
+/// Precision in which pixels are kept in memory. The lowest precision that the file format allows
+/// is used, since it takes the least memory. If the picture is also shown in the terminal, 64-bit
+/// floats are used.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum KeptPixels {
     /// Means of pixels in linear light, as 64-bit floats.
@@ -144,7 +144,8 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
         ),
     };
     let mean = match exact.bound() {
-        // The bound is 0 only if every pixel has a single colour, so that nothing is averaged.
+        // The bound is 0 only if every pixel has a single colour, so nothing was averaged and the
+        // note says that the value is exact.
         0.0 => "its pixel's only colour".to_owned(),
         bound => format!("within {} of its true mean", numbers::at_most(bound)),
     };
@@ -230,8 +231,8 @@ impl PictureOutput {
         Ok(Self::File(path.to_owned(), format, PathChoice::Explicit))
     }
 
-    /// Checks, before rendering, whether the picture can be written, as far as that can be known.
-    /// Rejects an output that would replace the scene.
+    /// Checks, before rendering, that the picture can probably be written. Rejects an output that
+    /// would replace the scene.
     pub fn check(&self, scene: &Path) -> Result<(), Trouble> {
         match self {
             Self::Standard if io::stdout().is_terminal() => Err(trouble(

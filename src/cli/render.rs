@@ -18,8 +18,9 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     let output = PictureOutput::of(&args.scene, args.output.as_deref())?;
     let input = SceneInput::read(&args.scene, &args.overrides)?;
     let scene = input.scene();
-    // The output is checked before rendering, which may take hours. It is also checked if the scene
-    // has errors: an output that cannot be written leads to exit status 2, which takes precedence.
+    // The output is checked before rendering, which may take hours. It is checked before the
+    // scene's errors are returned, because an output that cannot be written leads to exit status 2,
+    // which takes precedence over 1, the status of scene errors.
     output.check(&args.scene)?;
     let scene = scene?;
     // A crop on the command line replaces the one stored in the PNG. Both are in pixels of the

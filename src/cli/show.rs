@@ -150,7 +150,7 @@ impl Palette {
     /// Appends the escape sequence that sets a colour: that of the foreground if `which` is 38, or
     /// of the background if it is 48.
     fn push(self, text: &mut String, which: u8, [r, g, b]: [u8; 3]) {
-        // Writing to a string does not fail.
+        // Writing to a string does not fail, so the result is ignored.
         let _ = match self {
             Self::Full => write!(text, "\x1b[{which};2;{r};{g};{b}m"),
             Self::Of256 => write!(text, "\x1b[{which};5;{}m", nearest_of_256([r, g, b])),
@@ -167,8 +167,8 @@ fn size() -> (usize, usize) {
     (columns.max(1), rows_of_picture(rows))
 }
 
-/// Returns how many of the terminal's rows the picture may take. The others are for messages: a
-/// report on one mistake takes about eleven rows.
+/// Returns how many of the terminal's rows the picture may take. About 12 rows are left for
+/// messages, since a report on one mistake takes about eleven.
 fn rows_of_picture(rows: usize) -> usize {
     const MESSAGES: usize = 12;
     let rest = rows.saturating_sub(MESSAGES);

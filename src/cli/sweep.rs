@@ -86,13 +86,13 @@ impl Sweep {
         [&self.from, &self.to].map(|value| format!("{}={value}", self.target))
     }
 
-    /// Returns the scenes of the sweep. Their values are computed by the scene language: a `let`
-    /// for each is added to the end of the text.
+    /// Returns the scenes of the sweep. The scene language computes their values: for each scene, a
+    /// `let` with its value is appended to the text.
     ///
     /// # Errors
     ///
-    /// There is nothing between the first and the last value, for example because they are words or
-    /// colours.
+    /// The values between the first and the last cannot be computed, for example because these two
+    /// are words or colours.
     pub fn steps(&self, sources: &Sources) -> Result<Vec<SweepStep>, Trouble> {
         let Self {
             from, to, count, ..

@@ -10,9 +10,8 @@ use std::ops::Range;
 const AROUND: usize = 3;
 
 /// Maximum number of lines, in both texts together, that are skipped after a difference to find the
-/// place where the texts agree again. If no such place is found, all remaining lines count as
-/// changed. A larger limit finds farther places. But all pairs of places are tried, so the time
-/// grows with the square of the limit.
+/// place where the texts agree again. If no such place is found, all remaining lines are reported
+/// as changed. The time grows with the square of the limit, since all pairs of places are tried.
 const MOST_STEPS: usize = 1000;
 
 /// A change: lines of the old text, by their indices, and the lines of the new text that replace
@@ -39,8 +38,8 @@ pub fn lines(text: &str) -> Vec<&str> {
 }
 
 /// Writes changes in the unified diff format, each group below a line `@@ … @@` with its position.
-/// The function `shown` formats a line, given its sign (space, `-` or `+`) and its text without
-/// line feed.
+/// The function `shown` formats a line from its first character in the diff (space, `-` or `+`) and
+/// its text without line feed.
 pub fn hunks(
     changes: &[ReplacedLines],
     old: &[&str],
@@ -156,7 +155,8 @@ mod tests {
                 return Ok(());
             };
             prop_assert!(diff.is_empty() || output.status.success(), "{:?} {}", output, diff);
-            // If the new text is empty, `patch` may remove the file.
+            // If the new text is empty, `patch` may remove the file, so a missing file is read as
+            // empty.
             let made = fs::read_to_string(folder.path().join("old")).unwrap_or_default();
             prop_assert_eq!(made, new, "{}", diff);
         }

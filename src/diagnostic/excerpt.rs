@@ -49,14 +49,15 @@ pub const MIN_COLUMNS: usize = 30;
 /// middle of a label to the label's message, as in `╰── message`.
 const HOOK_COLUMNS: usize = 4;
 /// Minimum width, in columns, to which a label's message is wrapped. It is used if the label stands
-/// so far to the right that less room is left. A narrower message would be hard to read, and a much
-/// wider one would leave less room for the text of the scene.
+/// so far to the right that less room is left. A narrower message would be hard to read. With a
+/// larger minimum, more lines of the scene would be cut to make room for messages.
 const MIN_MESSAGE_COLUMNS: usize = 16;
 /// Maximum number of lines of a label that is drawn whole. A longer label is drawn only in its
 /// first line. With a much larger maximum, a label of a long block could fill the screen.
 const MAX_LABEL_LINES: usize = 6;
 
-/// Returns an excerpt of every source that has labels, in the order of the labels.
+/// Returns one excerpt for each source (the file or a `--set` argument) that contains labels of the
+/// diagnostic. The sources are in the order in which the labels first mention them.
 pub fn excerpts<'s>(
     diagnostic: &Diagnostic,
     sources: &'s Sources,
@@ -106,8 +107,8 @@ impl<'s> Excerpt<'s> {
             let end = excerpt.offset_of(span.end).max(start + 1);
             let inner = SourceSpan::from((start, end - start));
             let line = excerpt.line_at(start).map_or(start, |(_, line)| line.start);
-            // The line from a label to its message starts below the middle of the label in miette's
-            // drawing.
+            // In miette's drawing, a line leads from the middle of the label to its message, so the
+            // room for the message starts a few columns after the middle.
             let left = start.midpoint(end) - line + HOOK_COLUMNS;
             let room = columns.saturating_sub(left).max(MIN_MESSAGE_COLUMNS);
             let message = textwrap::fill(&visible_line(message), room);
@@ -139,7 +140,8 @@ impl<'s> Excerpt<'s> {
             }
             for (at, character) in self.source.slice(piece.clone()).char_indices() {
                 shown.push((piece.start + at, self.text.len()));
-                // A control character is escaped, so its length differs from that in the source.
+                // A control character is escaped and becomes longer, so offsets after it differ
+                // between the source and the excerpt.
                 push_visible(&mut self.text, character);
             }
             shown.push((piece.end, self.text.len()));
@@ -164,8 +166,8 @@ impl<'s> Excerpt<'s> {
         let line = self.lines.iter().find(|line| line.number == number);
         let mut shown = line.into_iter().flat_map(|line| line.shown.iter().rev());
         let found = shown.find(|(at, _)| *at <= offset);
-        // A byte order mark is not shown. An offset before all shown characters is mapped to the
-        // start of the line.
+        // The excerpt does not contain the byte order mark. An offset before all shown characters,
+        // such as that of the mark, is therefore mapped to the start of the line.
         let start = line.map_or(0, |line| line.start);
         found.map_or(start, |(_, place)| *place)
     }
@@ -252,8 +254,8 @@ fn shown_pieces(
         let from = source.floor_char_boundary(end.saturating_sub(around).max(line.start));
         let to = source.floor_char_boundary((end + around).min(line.end));
         match pieces.last_mut() {
-            // An ellipsis takes three bytes, so parts with at most three bytes between them are
-            // joined.
+            // An ellipsis `…`, which is three bytes long, stands between two parts. It would not be
+            // shorter than a gap of at most three bytes, so parts with such a gap are joined.
             Some(last) if from <= last.end + 3 => last.end = last.end.max(to),
             _ => pieces.push(from..to),
         }

@@ -45,7 +45,7 @@ pub struct Fix {
     pub edits: Vec<Edit>,
 }
 
-/// Replacement of a part of a text: of the file or of a `--set` argument, as the span says.
+/// Replacement of a part of a text, which is either the scene file or a `--set` argument.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct Edit {
@@ -154,10 +154,10 @@ fn with_comments(span: Span, sources: &Sources) -> Span {
     Span::new(span.source, span.start, span.end + behind.trim_end().len())
 }
 
-/// Characters of white space within a line: space and tab. Comments call them blanks.
+/// Characters of white space within a line: space and tab.
 const BLANK: [char; 2] = [' ', '\t'];
 
-/// Returns whether a text that follows `before` is the first on its line, apart from blanks.
+/// Returns whether only spaces and tabs stand after the last line start in `before`.
 fn starts_line(before: &str) -> bool {
     let outer = before.trim_end_matches(BLANK);
     outer.is_empty() || outer.ends_with(['\n', '\u{feff}'])
@@ -168,8 +168,8 @@ fn ends_line(rest: &str) -> bool {
     rest.is_empty() || rest.starts_with(['\n', '\r'])
 }
 
-/// Returns the text after the blanks and comments at its start. Skips line ends only within
-/// comments.
+/// Returns the text after the spaces, tabs and comments at its start. A line end is skipped only if
+/// it lies within a `/* */` comment.
 fn past_comments(text: &str) -> &str {
     let mut rest = text.trim_start_matches([' ', '\t']);
     loop {

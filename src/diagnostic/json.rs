@@ -50,7 +50,8 @@ pub fn to_json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
     })
 }
 
-/// Returns a span as JSON: offset and length in bytes and, for a `--set` argument, its name.
+/// Returns a span as JSON: its offset and length in bytes. If the span lies in a `--set` argument,
+/// the name of this argument is added.
 fn place(span: Span, source: &Source) -> Value {
     let (offset, length) = (span.start, span.end - span.start);
     match span.source {

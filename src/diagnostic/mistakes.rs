@@ -1,4 +1,4 @@
-//! The mistakes of a scene as an error.
+//! The error type for a text that is not a valid scene. It contains the mistakes of the text.
 
 use std::{error::Error, fmt, slice, sync::Arc};
 
@@ -29,7 +29,7 @@ pub struct Mistakes {
 }
 
 impl Mistakes {
-    /// Makes an error of the problems of a scene.
+    /// Makes the error that contains the problems of a scene.
     pub(crate) fn new(sources: Arc<Sources>, diagnostics: Vec<Diagnostic>) -> Self {
         Self {
             sources,

@@ -1,17 +1,17 @@
 //! Collects the problems that one stage of reading a scene finds, up to a maximum number.
 //!
-//! A megabyte of punctuation may contain a million mistakes, and a report takes a thousand times
-//! the memory of the text it refers to. Nobody reads the hundredth report.
+//! The number is limited because a megabyte of punctuation may contain a million mistakes. A report
+//! needs about a thousand times the memory of the text it refers to, and nobody reads a million.
 
 use std::ops::{Deref, DerefMut};
 
 use super::{Diagnostic, Label, Severity};
 use crate::source::Span;
 
-/// Maximum number of problems that a stage of reading a scene reports, and of places that one fix
-/// changes. Further problems are omitted, and a last diagnostic says so. Without a limit, the
-/// reports about a large file that is no scene would need a thousand times its memory. The number
-/// is far above what anyone reads.
+/// Maximum number of problems that one stage of reading a scene reports, and of edits in one fix.
+/// Further problems are omitted, and a last diagnostic says so. The number is far above what anyone
+/// reads. Without a limit, a large file that is no scene would cause so many reports that they fill
+/// the memory.
 pub const MOST_PROBLEMS: usize = 10_000;
 
 /// Message of the diagnostic that stands for all omitted problems. The summary does not count this
@@ -40,8 +40,9 @@ impl Problems {
         }
     }
 
-    /// Adds a problem that precedes others in the text. Unlike [`Self::push`], adds it even if
-    /// another problem was omitted before, as long as fewer than [`MOST_PROBLEMS`] are stored.
+    /// Adds a problem that was found only after problems further on in the text. Unlike
+    /// [`Self::push`], adds it even if another problem was omitted before, as long as fewer than
+    /// [`MOST_PROBLEMS`] are stored.
     pub fn push_earlier(&mut self, problem: Diagnostic) {
         if self.kept.len() < MOST_PROBLEMS {
             self.kept.push(problem);
@@ -58,14 +59,14 @@ impl Problems {
         self.left_out.is_some()
     }
 
-    /// Removes the problems from the index `length` on. If there were any, new problems can be
-    /// added, even if some were omitted before.
+    /// Removes the problems from the index `length` on. If at least one is removed, there is room
+    /// for new problems, which are then added even if others were omitted before.
     pub fn truncate(&mut self, length: usize) {
         self.split_off(length);
     }
 
-    /// Removes and returns the problems from the index `length` on. If there were any, new problems
-    /// can be added, even if some were omitted before.
+    /// Removes and returns the problems from the index `length` on. If at least one is removed,
+    /// there is room for new problems, which are then added even if others were omitted before.
     pub fn split_off(&mut self, length: usize) -> Vec<Diagnostic> {
         if length < self.kept.len() {
             self.left_out = None;

@@ -24,8 +24,9 @@ pub struct Style {
     pub color: bool,
     /// Width, in columns, to which the help is wrapped.
     pub width: usize,
-    /// Width of the terminal in columns, to which lines of an excerpt are cut and labels and titles
-    /// are wrapped. If it is `None`, there is no terminal, and only very long lines are cut.
+    /// Width of the terminal, in columns. Lines of the scene are cut to this width; labels and
+    /// titles are wrapped to it. If it is `None`, there is no terminal, and only very long lines
+    /// are cut.
     pub excerpt: Option<usize>,
 }
 
@@ -59,8 +60,8 @@ pub struct Report<'s> {
     style: Style,
 }
 
-/// Returns a line for each code that diagnostics have, with the number of diagnostics that have it,
-/// the most frequent code first.
+/// Returns one line for each code among the diagnostics, with the number of diagnostics that have
+/// this code. The most frequent code comes first.
 fn counts(diagnostics: &[Diagnostic]) -> String {
     let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
     for diagnostic in diagnostics

@@ -32,9 +32,9 @@ pub fn fixes<'a>(
     })
 }
 
-/// Returns the byte ranges of the made-up example values in `written`, the new text of a fix with
-/// placeholders. These values are its numbers and lists, or the whole text if it contains neither.
-/// The author replaces them.
+/// Returns the byte ranges of the placeholders in `written`, the new text of a fix that inserts
+/// example values. A placeholder is a number or a list that the author is to replace. If `written`
+/// contains neither, the whole text is the placeholder.
 pub fn made_up_values(written: &str) -> Vec<Range<usize>> {
     let mut values: Vec<Range<usize>> = Vec::new();
     let (mut lexer, mut open) = (Lexer::new(written, 0), 0_usize);

@@ -11,14 +11,14 @@ use crate::{
     syntax::tree::{self, Block, Definition, Field, Index, Item},
 };
 
-/// A text with its syntax tree, its meaning and its tokens. To analyze a scene with a thousand
-/// objects takes a few milliseconds, so each request makes a new analysis and does not keep it.
+/// A text with its syntax tree, its meaning and its tokens. Analyzing a scene of a thousand objects
+/// takes only a few milliseconds, so every request analyzes the text again.
 #[derive(Debug)]
 pub struct Analysis<'s> {
     /// The syntax tree, and the meaning: the scene, the values of definitions, and the problems.
     pub model: SemanticModel<'s>,
-    /// The tokens. They are computed on first use, since neither a picture nor a list of problems
-    /// needs them.
+    /// The tokens. They are computed on first use, because rendering and diagnostics do not need
+    /// them.
     tokens: OnceCell<Vec<RoleToken>>,
 }
 
@@ -96,8 +96,8 @@ impl<'s> Analysis<'s> {
         })
     }
 
-    /// Returns the word, number or sign at the offset `at`. If two of them touch there, prefers a
-    /// word or number to a sign, and otherwise the later one.
+    /// Returns the word, number or sign at the offset `at`. If two tokens touch at `at`, a word or
+    /// a number is preferred to a sign. Otherwise the later token is returned.
     pub(super) fn token_at(&self, at: usize) -> Option<RoleToken> {
         let index = self.tokens().partition_point(|token| token.span.end < at);
         let touching = self.tokens().iter().skip(index);
@@ -119,8 +119,8 @@ impl<'s> Analysis<'s> {
         Path::new(self.items(), at)
     }
 
-    /// Returns the block that contains the offset `at`, and its index named `name`, as `i` in
-    /// `for i < 3`. Returns `None` if the block has no such index.
+    /// Returns the block that contains the offset `at` and the `for` index `name` of this block, as
+    /// `i` in `for i < 3`. Returns `None` if the block has no index `name`.
     pub(super) fn index_at(&self, name: &str, at: usize) -> Option<(&Block<'s>, &Index<'s>)> {
         let block = self.path(at).block?;
         let mut indices = block.repetition.iter().flat_map(|it| &it.indices);
@@ -164,22 +164,21 @@ impl<'a, 's> Path<'a, 's> {
                     break;
                 }
             } else if matches!(item, Item::Block(_)) {
-                // The list of items is nearly in the order of the text: the only exception is a
-                // `let` within a block, which precedes the block in the list. So a later item may
-                // be a block that contains `at`, and only a block that starts after `at` ends the
-                // search.
+                // The items are in the order of the text, with one exception: a `let` within a
+                // block precedes the block in the list. After such a `let`, the block that contains
+                // `at` is still to come. So the search ends only at a block that starts after `at`.
                 break;
             }
         }
         path
     }
 
-    /// Returns the schema's row for the kind of the block in the path.
+    /// Returns the language's description of the path's block: its kind and its fields.
     pub fn row(&self) -> Option<&'static schema::BlockRow> {
         schema::block(self.block?.kind?.text)
     }
 
-    /// Returns the schema's row for the field in the path.
+    /// Returns the language's description of the path's field, e.g. its type.
     pub fn field_row(&self) -> Option<&'static schema::FieldRow> {
         self.row()?.field(self.field?.name.text)
     }

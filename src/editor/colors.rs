@@ -1,8 +1,8 @@
-//! Finds the colours in a text, and spells another colour in place of one of them.
+//! Finds the colours in a text, and returns the texts that can replace one of them by a new colour.
 //!
-//! The spelling keeps its form: a name stays a name if the new colour has one, a code such as
-//! `#ff0000` stays a code, and `rgb(…)` stays a call. A call with expressions or comments in it
-//! cannot be replaced, since they would be lost.
+//! The replacement keeps the form of the old text: a name stays a name if the new colour has one, a
+//! code such as `#ff0000` stays a code, and `rgb(…)` stays a call. A call that contains expressions
+//! or comments cannot be replaced, since they would be lost.
 
 use super::{analysis::Analysis, tokens::Role};
 use crate::{
@@ -75,9 +75,9 @@ fn is_plain(analysis: &Analysis<'_>, span: Span, call: &Call<'_>) -> bool {
     are_numbers && !comments.get(next).is_some_and(is_inside)
 }
 
-/// Returns the spellings of `color` that can replace the colour at `span`. The spelling with the
-/// form of the old one comes first. Returns an empty list if the text at `span` is a call that
-/// cannot be replaced.
+/// Returns the texts that can replace the colour at `span` by `color`. The first one has the same
+/// form as the old text: a name, a code or a call. Returns an empty list if the text at `span` is a
+/// call that cannot be replaced.
 pub fn presentations(analysis: &Analysis<'_>, span: Span, color: Color) -> Vec<String> {
     let own = match analysis.token_at(span.start).map(|token| token.role) {
         Some(Role::Function) => {

@@ -43,7 +43,7 @@ pub enum CompletionKind {
     Block,
     /// A field of a block.
     Field,
-    /// The name of a `let` or an index.
+    /// The name of a definition (`let`) or of an index (`for`).
     Definition,
     /// A function.
     Function,
@@ -126,7 +126,8 @@ fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
         // The camera comes first, because a scene needs one.
         let rank = u8::from(row.kind != BlockKind::Camera);
         let mut block = word(situation, row.name, CompletionKind::Block, about, rank);
-        // If the rest of the block is there already, only the keyword is inserted.
+        // If the text after the word already looks like the rest of a block, only the keyword is
+        // inserted.
         if !situation.goes_on {
             block.insert = block_with_fields(row);
         }
@@ -181,8 +182,8 @@ fn value_to_type_over(example: &str) -> Vec<SnippetPart> {
     }
 }
 
-/// Returns the snippet parts of a list: the text `open`, such as `(`, the elements `parts` as
-/// placeholders, and the closing parenthesis.
+/// Returns the snippet parts of a list. `open` is the text before the list's elements, e.g. `(`.
+/// Each of the elements `parts` becomes a placeholder.
 fn list_to_type_over<'p>(open: &str, parts: impl Iterator<Item = &'p str>) -> Vec<SnippetPart> {
     let mut pieces = vec![text(open)];
     for part in parts {
@@ -250,7 +251,7 @@ fn values(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     let mut completions: Vec<Completion> = written_out(analysis, situation).into_iter().collect();
     completions.extend(definitions(analysis, situation, is_color));
     if lists.contains(&wanted) {
-        // A field for several colours does not accept a single colour, so nothing else is offered.
+        // The value must be a list of colours, so functions and single colours are not offered.
         return completions;
     }
     completions.extend(functions(situation, is_color));
@@ -287,9 +288,9 @@ fn written_out(analysis: &Analysis<'_>, situation: &Situation) -> Option<Complet
     })
 }
 
-/// Returns completions for the indices of the current block and for the definitions before the
-/// typed word. If `is_color` is `Some(true)`, leaves out those that are no colours; if it is
-/// `Some(false)`, leaves out the colours.
+/// Returns completions for the `for` indices of the current block and for the definitions before
+/// the typed word. If `is_color` is `Some(true)`, only colours are offered. If it is `Some(false)`,
+/// colours are left out.
 fn definitions(
     analysis: &Analysis<'_>,
     situation: &Situation,

@@ -25,7 +25,7 @@ const CURSOR: &str = "__cursor__";
 pub struct Situation {
     /// Kind of text that can be typed: an item, a field or a value.
     pub expected: Expected,
-    /// Row of the schema for the current block, if the block's kind is known.
+    /// The language's description of the current block; `None` if the block's keyword is unknown.
     pub block: Option<&'static schema::BlockRow>,
     /// Names of the fields that the current block has. A name that is just being typed is not among
     /// them.
@@ -162,8 +162,9 @@ fn open_lists(analysis: &Analysis<'_>, at: usize) -> usize {
     })
 }
 
-/// Returns what can be typed in place of `word`, given the path to the made-up name in the syntax
-/// tree. Returns `None` in the name of a definition or in the head of a block.
+/// Returns what can be typed in place of `word`. `path` is the path in the syntax tree to the name
+/// that replaces `word` while the text is parsed. Returns `None` in the name of a definition or in
+/// the head of a block.
 fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
     let row = path
         .block
@@ -190,7 +191,8 @@ fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
         situation.goes_on = matches!(last.kind, ValueKind::Call(_));
     } else if let Some(field) = path.field {
         situation.expected = Expected::Field;
-        // If the value of a field is missing, the parser takes the next field's name for the value.
+        // If the value of a field is missing, the parser reads the next field's name as this value.
+        // The next field is then treated as given, too.
         let next = match &field.value.kind {
             ValueKind::Name(name) => Some(*name),
             ValueKind::Call(call) => Some(call.function.text),
@@ -202,8 +204,8 @@ fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
         situation.goes_on = !is_empty && next.is_none();
     } else if let Some(block) = path.block {
         situation.expected = expected_in(block, word.start)?;
-        // If another block follows, the parser takes the keyword of that block for the name of this
-        // one.
+        // If another block follows, the parser reads its keyword as the name of this block, and its
+        // braces as those of this block.
         let is_own =
             |block: &Block<'_>| block.name.is_none_or(|it| schema::block(it.text).is_none());
         situation.goes_on = block.open.is_some() && is_own(block);
@@ -214,7 +216,7 @@ fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
     Some(situation)
 }
 
-/// Returns whether the made-up name is in a value rather than the name of a field or a definition.
+/// Returns whether [`CURSOR`] is in a value rather than the name of a field or a definition.
 fn holds_value(path: &Path<'_, '_>) -> bool {
     path.field.is_none_or(|field| field.name.text != CURSOR)
         && path
@@ -227,9 +229,9 @@ fn is_cursor(value: &tree::Value<'_>) -> bool {
     matches!(value.kind, ValueKind::Name(CURSOR))
 }
 
-/// Returns what can be typed at the offset `at`, which is in a block but not in one of its fields.
-/// This is another keyword in place of the block's keyword, or a field between the braces. Returns
-/// `None` in the rest of the block's head.
+/// Returns what can be typed at the offset `at`, which is in a block but not in one of its fields:
+/// a keyword at the start of the block, or a field between the braces. Returns `None` elsewhere in
+/// the block's head.
 fn expected_in(block: &Block<'_>, at: usize) -> Option<Expected> {
     if block.kind.is_some_and(|kind| kind.text == CURSOR) {
         return Some(Expected::Item);
@@ -251,8 +253,8 @@ fn wanted(path: &Path<'_, '_>, takes: Option<Type>) -> Option<Type> {
             }
             ValueKind::Tuple(_) | ValueKind::Parentheses(_) => match wanted {
                 Some(Type::Colors | Type::FaceColors) => Some(Type::Color),
-                // These parentheses enclose a vector or a part of an expression, which usually
-                // contain numbers.
+                // A vector consists of numbers, and parentheses in an expression usually contain
+                // numbers.
                 Some(Type::Vector) => Some(Type::Number),
                 wanted => wanted,
             },

@@ -31,8 +31,8 @@ struct Remark<'s> {
     name: &'s str,
     /// Result of the value, if it is an expression.
     result: Option<Value>,
-    /// A fact that follows from this value and other fields of the block, such as the field of
-    /// view, which follows from the distance `d` of the view plane.
+    /// A fact that follows from the value together with other fields of the block. For example, the
+    /// field of view follows from the camera's field `d`, the distance of the view plane.
     beside: Option<String>,
 }
 
@@ -147,8 +147,8 @@ fn beside(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> Opti
     }
 }
 
-/// Returns whether a reported problem has a label at the field's name or at the block's keyword. A
-/// report of conflicting fields has such labels.
+/// Returns whether a reported problem has a label at the field's name or at the block's keyword, as
+/// problems about conflicting fields have.
 fn is_disputed(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> bool {
     let diagnostics = analysis.diagnostics().iter();
     let mut labels = diagnostics.flat_map(|diagnostic| &diagnostic.labels);

@@ -29,8 +29,8 @@ pub struct Hover {
     pub markdown: String,
 }
 
-/// Returns the description of the word at the offset `at`. If a problem is reported there, its
-/// message comes first, and the page that explains this kind of problem comes last.
+/// Returns the description of the word at the offset `at`. If a problem is reported at `at`, the
+/// problem's message precedes the description, and a longer explanation of the problem follows it.
 pub fn hover(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     let meaning = meaning(analysis, at);
     let Some((span, problem)) = mistake(analysis, at) else {
@@ -184,9 +184,9 @@ pub(super) fn about_index(analysis: &Analysis<'_>, index: &Index<'_>) -> String 
     )
 }
 
-/// Returns the position in `path.values` of the value that the hover describes. This is the
-/// innermost value. If it is a number, a list or a negation within an operation or call, that
-/// operation or call is described instead.
+/// Returns the index in `path.values` of the value that the hover describes. Usually this is the
+/// last one, i.e. the innermost value. A number, a list or a negation within an operation or a call
+/// is not described by itself; the hover describes the operation or the call.
 fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
     use ValueKind::{Call, Chain, Negation, Number, Parentheses, Tuple};
     let (value, around) = path.values.split_last()?;
@@ -231,7 +231,8 @@ fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: RoleToken) -> 
             about(call.function.span, markdown)
         }
         ValueKind::Number(_) => {
-            // A number is described by its field. The numbers within a vector are not described.
+            // The description of a number is that of its field. A component of a vector has no
+            // description.
             let (row, field) = (path.row()?, path.field_row()?);
             if depth > 0 {
                 return None;

@@ -1,7 +1,7 @@
 //! Finds the definitions and uses of names, and renames them.
 //!
-//! `let`s and objects have separate namespaces, so a `let` and an object may have equal names. An
-//! index is known only in its block.
+//! `let`s and objects have separate namespaces, so a `let` and an object may have equal names. The
+//! index of a repeated block, as `i` in `for i < 3`, can be used only in this block.
 
 use super::{
     analysis::Analysis,
@@ -21,14 +21,15 @@ pub struct Occurrence {
     pub is_definition: bool,
 }
 
-/// Namespace of a name: the namespace of `let`s and indices, or the namespace of objects.
+/// Namespace of a name: the namespace of `let`s and `for` indices, or the namespace of objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Namespace {
     Lets,
     Objects,
 }
 
-/// Returns the definition of the name at the offset `at`: the span of the name in it.
+/// Returns the span of the name at the place where it is defined. The offset `at` is in the
+/// definition or in a use of the name.
 pub fn definition(analysis: &Analysis<'_>, at: usize) -> Option<Span> {
     let mut occurrences = occurrences(analysis, at).into_iter();
     let first = occurrences.find(|occurrence| occurrence.is_definition);

@@ -16,7 +16,7 @@ pub struct SemanticToken {
     pub span: Span,
     /// Kind by which editors colour the token.
     pub kind: SemanticKind,
-    /// Whether the token is the name of a `let` or an index in its own definition.
+    /// Whether the token is the name of a `let` or a `for` index in its own definition.
     pub is_declaration: bool,
 }
 
@@ -28,7 +28,7 @@ pub enum SemanticKind {
     Keyword,
     /// The name of a field.
     Property,
-    /// The name of a `let` or an index.
+    /// The name of a `let` or a `for` index.
     Variable,
     /// The name of an object.
     Class,

@@ -15,8 +15,9 @@ use crate::{
 pub struct Symbol {
     /// Name of the definition, field or object. A block without a name is listed under its keyword.
     pub name: String,
-    /// Text shown beside the name: the kind of a named block and the head of its repetition, or the
-    /// value of a definition or field.
+    /// Text shown beside the name. For a definition or field, it is the value. For a block, it
+    /// consists of the keyword, if the block has a name, and of the repetition, such as `for i <
+    /// 3`.
     pub detail: String,
     /// Whether the entry is a definition, a setting, an object or a field.
     pub kind: SymbolKind,
@@ -80,8 +81,8 @@ fn of_block(analysis: &Analysis<'_>, block: &Block<'_>) -> Option<Symbol> {
         selection: field.name.span,
         children: Vec::new(),
     });
-    // A misplaced name before the keyword, as in `let Ball = sphere {`, lies outside of the block's
-    // span.
+    // An author may write the name before the keyword by mistake, as in `let Ball = sphere {`. This
+    // name lies outside of the block's span, so it is left out of the outline.
     let name = block
         .name
         .filter(|name| name.span.start >= block.span.start);

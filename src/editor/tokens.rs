@@ -30,7 +30,7 @@ pub enum Role {
     Let,
     /// The keyword `for` of a repeated block.
     Repeat,
-    /// A name that is defined: the name of a `let` or an index in its definition.
+    /// A name in its own definition: the name of a `let` or a `for` index.
     Defined,
     /// The keyword of a block.
     Kind,
@@ -38,7 +38,8 @@ pub enum Role {
     ObjectName,
     /// The name of a field.
     Field,
-    /// A name that is used as a value: of a `let`, an index, a colour, or a constant.
+    /// A name that is used as a value, e.g. the name of a `let`, a `for` index, a colour or a
+    /// constant.
     Name,
     /// A function's name before its `(`.
     Function,
@@ -87,8 +88,8 @@ fn scanned(text: &str, comments: &[Span]) -> Vec<RoleToken> {
     let mut lexer = Lexer::new(text, 0);
     loop {
         let token = lexer.token();
-        // Error recovery may have taken a text such as `# …` for a comment, which may start with
-        // any token.
+        // Comments are skipped. The parser also recognizes comments of other languages, such as
+        // `--`, so a comment may start with any token.
         if let Some(comment) = comments.next_if(|comment| comment.start <= token.start)
             && comment.end > token.start
         {

@@ -3,8 +3,8 @@
 //!
 //! In: the lines that pass through the sub-pixel. Out: the cells, each with a point inside, added
 //! to [`Regions`]. The sub-pixel starts as one cell; each line in turn cuts the cells that it
-//! crosses. The error bound counts the position error of each line times the line's length, and the
-//! whole area of each cell that is too small to determine its colour.
+//! crosses. The error bound includes two terms: for each line, its position error times its length;
+//! for each cell whose colour is uncertain because the cell is too small or too thin, its area.
 
 use std::mem;
 
@@ -46,9 +46,10 @@ pub fn shares(lines: &[BoundaryLine], mut regions: Regions) -> Shares {
     for line in lines {
         let rad = line.rad + ROUNDING;
         worst = worst.max(rad);
-        // `rad` is the maximum error of a value of the line's form at a vertex. The larger of the
-        // form's factors of x and y is at least 1/2, so the true line is within 2·`rad` of the
-        // computed one. The line is at most √2 long in the pixel, and 2·√2 < 3.
+        // `rad` is the maximum error of a·x + b·y + c, the form of the line, at a vertex. The
+        // larger of |a| and |b| is at least 1/2, so the true line is within 2·`rad` of the computed
+        // one. The line is at most √2 long in the pixel. The area between the true and the computed
+        // line is therefore at most 2·√2·`rad`, which is less than 3·`rad`.
         regions.add_doubtful_area(3.0 * rad);
         for polygon in mem::take(&mut polygons) {
             if regions.budget.is_spent() {
@@ -67,8 +68,9 @@ pub fn shares(lines: &[BoundaryLine], mut regions: Regions) -> Shares {
         }
         let area = area(polygon);
         let inside = center(polygon);
-        // If the point at which the cell's colour is determined is close to a line, rounding may
-        // have put the point, and even the whole cell, on the wrong side of the line.
+        // The cell's colour is determined at the point `inside`. If this point is close to a line,
+        // rounding may have put it, and even the whole cell, on the wrong side of the line. The
+        // cell's colour is then uncertain.
         let may_be_thin = || area <= MAX_AREA_PER_HEIGHT * polygon.len() as f64 * worst;
         let is_near_line = || {
             lines

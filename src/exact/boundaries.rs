@@ -56,7 +56,7 @@ enum BoundarySource {
 struct Boundaries<'a, T: Precision> {
     world: &'a World,
     candidates: &'a [VisibilityCandidate],
-    /// The objects of the candidates, prepared on first use.
+    /// Geometry of each candidate object, prepared on first use.
     objects: Vec<OnceCell<ObjectRef<'a, T>>>,
     frame: SubPixelFrame<T>,
     budget: &'a PixelBudget<'a>,
@@ -118,8 +118,8 @@ pub fn curves(
         }
         ControlFlow::Continue(())
     };
-    // Silhouettes come first: the silhouettes of a heap of objects alone exceed `max_curves`, long
-    // before all pairs have been examined.
+    // Silhouettes come before pairs, so that the search stops early in a heap of objects: their
+    // silhouettes alone are more than `max_curves`.
     let outlines = boundaries.outlines(&mut take);
     if outlines.is_break() || boundaries.pairs(&mut take).is_break() {
         return false;
@@ -202,7 +202,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
             for (j, b) in self.candidates.iter().enumerate().skip(i + 1) {
                 let apart = a.inverse_depth.high < b.inverse_depth.low
                     || b.inverse_depth.high < a.inverse_depth.low;
-                // Boards are all parallel, so that two of them do not intersect. Their common
+                // All checkerboards are horizontal, so two of them do not intersect. Their common
                 // silhouette, the horizon, is among the outlines.
                 let are_parallel = is_board(a) && is_board(b);
                 if !apart && !are_parallel {

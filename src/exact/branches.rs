@@ -21,14 +21,13 @@ use super::conic_segment::Arc;
 /// tolerance of 9e-10.
 const ARC_TOLERANCE: f64 = 32.0 * f64::UNIT;
 
-/// Maximum |dy/dx| of a line that is treated as a function y(x). A steeper line counts as vertical,
-/// because its x changes by less than eight unit roundoffs across the pixel.
+/// Maximum |dy/dx| of a line that is treated as a function y(x). A steeper line is treated as
+/// vertical, because its x changes by less than eight unit roundoffs across the pixel.
 const MAX_SLOPE: f64 = (1u64 << 50) as f64;
 
-/// Minimum distance in y, in pixels, between the pixel and a conic's branch (one of its two
-/// functions y(x)) at which the branch is ignored. If the branch's largest |y| is above 1, the
-/// distance is a fraction of this |y| instead. The value is millions of times the rounding errors
-/// of y, so that no branch inside the pixel is ignored.
+/// Distance from the pixel beyond which a branch of a conic (one of its two functions y(x)) is
+/// ignored, in units of the branch's largest |y|, or in pixels if this |y| is below 1. The value is
+/// millions of times the rounding errors of y, so that no branch inside the pixel is ignored.
 const OUTSIDE_MARGIN: f64 = 1.0 / (1u64 << 30) as f64;
 
 /// A curve as a function y(x).
@@ -69,8 +68,8 @@ pub struct ConicSpan<'a> {
     graph: &'a ConicGraph,
     /// Values of x at the left end, in the middle and at the right end.
     x: [f64; 3],
-    /// Values of √Δ, the root in the formula for y, at the left end, in the middle and at the right
-    /// end.
+    /// Values of √Δ in the formula y = (−b ± √Δ)/C ([`ConicGraph`]), at the left end, in the middle
+    /// and at the right end.
     roots: [f64; 3],
 }
 
@@ -135,8 +134,8 @@ impl ConicGraph {
         })
     }
 
-    /// Computes y at `x` of the conic's branch with the sign `side` (1 or −1). `root` is √Δ, the
-    /// root in the formula for y, at `x`.
+    /// Returns the value y(x) of the conic's branch with the sign `side` (1 or −1). `root` is the
+    /// value of √Δ ([`ConicGraph`]) at `x`.
     fn y(&self, x: f64, root: f64, side: f64) -> f64 {
         let [a, b, c, d, e, f] = &self.factors;
         let root = root * side;
@@ -153,8 +152,9 @@ impl ConicGraph {
         }
     }
 
-    /// Computes in double-double the point at `x` of the conic's branch with the sign `side` (1 or
-    /// −1), and there the root √Δ in the formula for y, with this sign.
+    /// Returns the point at `x` of the conic's branch with the sign `side` (1 or −1), computed in
+    /// double-double. The result also has the root ±√Δ ([`ConicGraph`]) at the point, with the sign
+    /// `side`.
     fn end_in_double(&self, x: f64, side: f64) -> ArcEnd<Double> {
         let [a, b, c, d, e, f] = &self.factors;
         let [p, q, r] = &self.delta;
@@ -195,7 +195,8 @@ impl<'a> ConicSpan<'a> {
             return None;
         }
         // If the branch is curved in one direction only, its distance from the chord is at most
-        // twice `sagitta`, the distance in the middle.
+        // twice `sagitta`, the distance in the middle. The branch is therefore outside the pixel if
+        // its three computed points are farther outside than that.
         let sagitta = y[1] - 0.5 * (y[0] + y[2]);
         let size = y.iter().fold(1.0, |size: f64, y| size.max(y.abs()));
         let beyond = 0.5 + 2.0 * sagitta.abs() + OUTSIDE_MARGIN * size;
@@ -264,8 +265,7 @@ impl<'a> ConicSpan<'a> {
 }
 
 /// A point of a conic on one of its two branches, and the root ±√Δ ([`ConicGraph`]) there, with the
-/// sign of the branch. The root is half of the derivative of the conic's quadratic form with
-/// respect to y.
+/// sign of the branch. The root is half of the y component of the conic's gradient at the point.
 struct ArcEnd<T> {
     at: [T; 2],
     root: T,
@@ -275,8 +275,8 @@ struct ArcEnd<T> {
 struct Tangents {
     /// Position of the control point relative to the arc's start.
     control: DVec2,
-    /// Square of the arc's weight, i.e. of the weight of its control point as a rational Bézier
-    /// curve.
+    /// Square of the arc's weight. The weight is that of the control point if the arc is written as
+    /// a rational quadratic Bézier curve whose end points have the weight 1.
     w2: f64,
     /// Maximum error of the area between the arc and its chord.
     off: f64,
@@ -286,19 +286,19 @@ impl Tangents {
     /// Intersects the tangents of the conic with the coefficients `factors` at the points `ends`,
     /// and bounds the error of the area between the arc and its chord.
     fn new<T: Real<Radius = f64>>(factors: &[T; 6], ends: &[ArcEnd<T>; 2]) -> Self {
-        // The chord and the two tangents are the sides of a triangle. The computed gradient of the
-        // conic has an error of κ roundings of its length, where κ − 1 is the size of its terms
-        // divided by its length. The direction of each tangent has the same error in radians. It
-        // changes the triangle's area by half the square of the tangent's side times the error. If
-        // the control point moves along a tangent, the triangle's area and the weight change in
-        // opposite directions, so that the area between arc and chord changes no more than the
-        // triangle's.
+        // The chord and the two tangents are the sides of a triangle. Let κ − 1 be the sum of the
+        // absolute values of the gradient's terms, divided by the gradient's length. The computed
+        // gradient has a relative error of κ roundings, so the direction of each tangent has an
+        // error of κ roundings, in radians. This error changes the triangle's area by half the
+        // square of the tangent's side times the error. If the control point moves along a tangent,
+        // the triangle's area and the weight change in opposite directions, so that the area
+        // between arc and chord changes no more than the triangle's.
         //
         // The square of the weight is the quotient of two values of the conic's quadratic part Q.
-        // The area between arc and chord grows no faster than the weight. A value of Q has the
-        // rounding errors of its own terms, and the error of the vector at which Q is taken. An
-        // error of the root √Δ (`ConicGraph`) is not counted: it corresponds to another conic
-        // within the error of the given one, which moves points and tangents together.
+        // The area between arc and chord grows no faster than the weight. A value of Q has two
+        // errors: the rounding errors of its terms, and the effect of the error of its argument, a
+        // vector. An error of the root √Δ (`ConicGraph`) is not included: it corresponds to another
+        // conic within the error of the given one, which moves points and tangents together.
         let [a, b, c, d, ..] = factors;
         let product = |[x, y]: &[T; 2], [z, w]: &[T; 2]| x.times(z).plus(&y.times(w));
         let length = |[x, y]: &[T; 2]| libm::hypot(x.to_f64(), y.to_f64());
@@ -330,7 +330,8 @@ impl Tangents {
         let [[x, y], [far_x, far_y]] = ends.each_ref().map(|end| &end.at);
         let chord = [far_x.minus(x), far_y.minus(y)];
         let [here, there] = &gradients;
-        // The control point lies on the tangent at the start and on the tangent at the end.
+        // The control point is the intersection of two tangents: `along` is a vector along the
+        // tangent at the start, and `way` times this vector leads to the tangent at the end.
         let along = [here[1].negated(), here[0].clone()];
         let way = product(there, &chord).over(&product(there, &along));
         let control = along.map(|x| x.times(&way));
@@ -430,16 +431,17 @@ impl Section {
     /// and how far the two are apart in y. Returns `None` unless both curves are arcs that bulge to
     /// the same side. The bounds are tight if the arcs are nearly parallel or nearly coincide.
     fn parallel_bounds(&self, other: &Self) -> Option<[f64; 2]> {
-        // Points of the two arcs with the same curve parameter are compared, with heights measured
-        // from the direction of this arc's chord. If the weights are equal, a point of each arc is
-        // the same weighted mean of that arc's three control points. A difference in x counts times
-        // the slope of the steepest tangent. A difference in weight moves a point by at most this
-        // difference times the point's distance from the control point.
+        // Points of the two arcs with the same curve parameter are compared. Their heights are
+        // measured in y from the direction of this arc's chord. If the weights are equal, a point
+        // of each arc is the same weighted mean of that arc's three control points, so the heights
+        // differ by at most the largest difference between control points. A difference in x adds
+        // at most itself times the slope of the steepest tangent. A difference in weight moves a
+        // point by at most this difference times the point's distance from the control point.
         //
-        // The control point of a narrow arc is uncertain along the arc, where the area hardly
-        // depends on it. The error of a point is less than eight times the area's error divided by
-        // the width, plus the rounding error of x, which changes the area by at most itself times
-        // the arc's height.
+        // Rounding may move the control point of a narrow arc along the arc, where the area hardly
+        // depends on it. The error of a point is less than the sum of two terms. One is eight times
+        // the area's error divided by the width. The other is the rounding error of x, which
+        // changes the area by at most this error times the arc's height.
         let ((up, a), (other_up, b)) = (self.arc.as_ref()?, other.arc.as_ref()?);
         if up != other_up {
             return None;
@@ -455,9 +457,8 @@ impl Section {
         let size = legs.iter().map(|leg| leg.length()).fold(0.0, f64::max);
         let weights = (a.weight - b.weight).abs();
         let aside = (a.control.x - b.control.x).abs() + weights * size;
-        // The coordinates of each arc's points have rounding errors of about twenty operations. The
-        // errors of both arcs count, in the three points as well as in the chord from which heights
-        // are measured.
+        // The bound includes the rounding errors of about twenty operations in the points of each
+        // arc and in the chord from which heights are measured.
         let rounding = 64.0 * f64::UNIT * (1.0 + size + slope.abs() * aside);
         let off = weights * tallest
             + (aside + rounding) * steepest

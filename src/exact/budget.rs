@@ -11,8 +11,9 @@ use std::{
 };
 
 /// Maximum work on a pixel, in units of about 50 ns. It limits the time for a pixel of any scene to
-/// about 0.6 seconds; the rest of the pixel then counts as an error. A unit is the time to cut one
-/// square of a checkerboard out of a polygon on the machine where it was measured.
+/// about 0.6 seconds; the area that is not computed by then is added to the error bound. A unit is
+/// the time to cut one square of a checkerboard out of a polygon on the machine where it was
+/// measured.
 const PIXEL_WORK: f64 = 1.2e7;
 
 /// Work of all threads on the pixels of a picture, and its limit.

@@ -2,8 +2,9 @@
 //! `strips_simd`.
 //!
 //! In: a convex polygon and a linear form. Out: the parts on both sides of the form's zero line
-//! (Sutherland and Hodgman, "Reentrant polygon clipping", 1974, one half-plane at a time). A
-//! crossing is off by a few roundings along its side, which callers add to their bounds.
+//! (Sutherland and Hodgman, "Reentrant polygon clipping", 1974, one half-plane at a time). Rounding
+//! displaces a crossing by a few unit roundoffs along its side; callers add this error to their
+//! bounds.
 
 use glam::DVec2;
 
@@ -53,8 +54,8 @@ pub(super) fn split(
     chord
 }
 
-/// Returns the signed area of a polygon, and its perimeter, where the length of a side counts as
-/// |dx| + |dy|.
+/// Returns the signed area of a polygon, and its perimeter. In the perimeter, the length of a side
+/// is measured as |dx| + |dy|.
 pub(super) fn measure(polygon: &[DVec2]) -> (f64, f64) {
     let Some((&origin, others)) = polygon.split_first() else {
         return (0.0, 0.0);

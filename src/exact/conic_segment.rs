@@ -4,9 +4,9 @@
 //! In: an arc as a rational quadratic Bézier curve. Out: the segment's area in closed form, and the
 //! integral of the board's sign over the segment. For the integral, the arc is cut wherever it
 //! crosses a line of the board. The segment of each piece then lies in one square, and the chords
-//! of the pieces bound a convex polygon. Segments below a minimum area are neglected, which limits
-//! their number towards the horizon. The error bound counts neglected areas and the rounding errors
-//! of positions.
+//! of the pieces bound a convex polygon. Segments below a minimum area are neglected, so that their
+//! number is limited towards the horizon. The error bound includes the neglected areas and the
+//! rounding errors of positions.
 
 use glam::DVec2;
 
@@ -15,9 +15,9 @@ use super::{
     checker::{BoundedSum, Homography, UNIT, form, square_wave},
 };
 
-/// Maximum of |1 − w²| at which the area of an arc of weight w is computed by a series. A larger
-/// value uses a closed formula, which loses digits near w = 1, a parabola. The first of the terms
-/// that the series omits is at most 0.36³⁴ = 8e-16.
+/// Maximum of |1 − w²| at which the area of an arc of weight w is computed by a series. Above this
+/// maximum, a closed formula is used, which loses digits near w = 1, a parabola. The first of the
+/// terms that the series omits is at most 0.36³⁴ = 8e-16.
 const NEAR_PARABOLA: f64 = 0.36;
 
 /// Maximum number of a board's lines at which an arc is cut into pieces. If more lines cross the

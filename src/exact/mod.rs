@@ -75,22 +75,22 @@ const DEFAULT_TOLERANCE: f64 = 9e-10;
 /// seven times as long with 96 as with 24.
 const MAX_CURVES: usize = 12;
 /// Number by which the maximum number of curves in a square part of a pixel grows with each
-/// quartering. Curves that pass through the same small part are unlikely to be separated in smaller
-/// ones. Measured on a heap of objects: with 1 instead of 4, the time is two thirds; with 16, it is
-/// four times as long.
+/// quartering. Curves that still pass through the same small part are unlikely to be separated in
+/// smaller ones, so further quartering hardly helps. Measured on a heap of objects: with 1 instead
+/// of 4, the time is two thirds; with 16, it is four times as long.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// Maximum number of times per pixel that an already computed part of the pixel is quartered to
 /// reduce its error bound. While the pixel's bound exceeds the tolerance, the part with the largest
 /// bound comes first. Near a point that a few curves share, each quartering reduces the bound to a
 /// quarter; 16 of them reduce it by a factor of 2^32.
 const MAX_QUARTERINGS: usize = 16;
-/// Maximum memory of a pixel's queued parts, in bytes. Above it, the pixel is not divided any
-/// further, and uncomputed parts count as errors, which a smaller maximum would make more frequent.
-/// Memory that a part needs only while it is computed is not counted.
+/// Maximum memory of a pixel's queued parts, in bytes, without temporary memory. Above it, no part
+/// is quartered any more, and the areas of parts that are not computed are added to the error
+/// bound. A smaller maximum would cause this error more often.
 const MAX_MEMORY: usize = 64 << 20;
-/// Minimum side of a square part of a pixel that is quartered because too many curves pass through
-/// it, in pixels. A smaller part counts as an error instead; its area is less than a unit roundoff
-/// of the pixel's area.
+/// Minimum side, in pixels, of a square part of a pixel that is quartered because too many curves
+/// pass through it. The area of a smaller part is added to the error bound instead; it is less than
+/// a unit roundoff of the pixel's area.
 const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
 /// Work charged to a pixel's budget per square part of the pixel ([`PixelPiece`]), in units of
 /// about 50 ns. A rough value is enough, because the budget only stops what takes too long.
@@ -119,7 +119,7 @@ pub struct ExactPixel<const N: usize = 3> {
 pub struct Integrator<'a, const N: usize = 3> {
     pub(crate) world: &'a World,
     quartering: Quartering<'a>,
-    /// Values of each colour of the world's palette, by the colour's index there (its slot).
+    /// The N values of each colour of the world's palette, in the order of the palette.
     colors: Vec<[f64; N]>,
     /// Requested error bound: the fraction of a pixel's area that may have a wrong colour.
     tolerance: f64,
@@ -142,7 +142,7 @@ enum PieceState {
     /// budget is spent.
     Crowded,
     Computed,
-    /// Not quartered any more: quartering its parent reduced the bound by less than half.
+    /// Computed, and not quartered again, because the last quartering hardly reduced the bound.
     Final,
 }
 
@@ -157,8 +157,7 @@ impl PixelPiece {
         self.area() * self.shares.bound
     }
 
-    /// Returns the memory of this part's vectors, in bytes. The memory of the part itself is
-    /// counted with the queue.
+    /// Returns the memory of this part's vectors, in bytes, without that of the struct itself.
     fn memory(&self) -> usize {
         let candidates = self.candidates.capacity() * size_of::<VisibilityCandidate>();
         let shares = self.shares.by_slot.capacity() * size_of::<(usize, f64)>();
@@ -191,9 +190,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
         self
     }
 
-    /// Limits the work on the picture, in units of about 50 ns. Above the limit,
-    /// [`pixels`](Self::pixels) returns `None`, and [`shares`](Self::shares) uses the colour in the
-    /// middle of each remaining pixel.
+    /// Limits the work on the picture, in units of about 50 ns. If the limit is exceeded,
+    /// [`pixels`](Self::pixels) returns `None`. [`shares`](Self::shares) then examines only the
+    /// middle of each remaining pixel and gives its colour to the whole pixel.
     pub fn with_work_limit(mut self, limit: u64) -> Self {
         self.work = PictureWork::new(limit);
         self
@@ -261,10 +260,10 @@ impl<'a, const N: usize> Integrator<'a, N> {
         (flow.is_continue() && !is_over()).then_some(film.pixels)
     }
 
-    /// Calls `show` with each area in which only one object is seen, and with each other pixel,
-    /// together with the objects' shares of the area. The world must be made by
-    /// [`World::by_object`], so that palette indices stand for objects. Above the work limit, a
-    /// pixel's middle counts for the whole pixel. Returns whether all shares are within 1e-6.
+    /// Calls `show` with each area that shows only one object, and with each other pixel, together
+    /// with the objects' shares of the area. The world must be made by [`World::by_object`], so
+    /// that palette indices stand for objects. Above the work limit, the object in a pixel's middle
+    /// gets the whole pixel. Returns whether all errors of shares are at most 1e-6.
     pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
         let mut is_exact = true;
         let mut curves = Vec::new();
@@ -334,7 +333,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         while bound > self.tolerance
             && !budget.is_spent()
             && queue.peek().is_some_and(|ByKey(_, worst)| {
-                // A full queue is copied to twice its memory; old and new memory then both exist.
+                // Adding to a full queue doubles it; the old and the new memory then both exist.
                 let copies = 1 + 2 * usize::from(queue.len() + 3 > queue.capacity());
                 let places = copies * queue.capacity() * size_of::<ByKey<PixelPiece>>();
                 memory + places + 4 * worst.memory() <= MAX_MEMORY

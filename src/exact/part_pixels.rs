@@ -3,10 +3,11 @@
 use super::ExactPixel;
 use crate::area::Area;
 
-/// The pixels of a part of the picture, filled in any order.
+/// The pixels of a rectangular part of the picture, set one by one or an area at a time, in any
+/// order.
 pub(super) struct PartPixels<const N: usize> {
     pub part: Area,
-    /// Pixels of the part, row by row.
+    /// All pixels of the rectangle `part`, row by row.
     pub pixels: Vec<ExactPixel<N>>,
 }
 

@@ -3,8 +3,8 @@
 //! In: regions between boundaries, with a point inside each. Out: the share of each colour in the
 //! sub-pixel, with an error bound. One ray through the point decides which object is seen in the
 //! region; a checkerboard is then integrated by `checker` and `conic_segment`. The error bound is
-//! the sum of the integrals' bounds, of the doubtful areas that callers report, and of the
-//! difference between the regions' total area and that of the sub-pixel.
+//! the sum of three terms: the bounds of the integrals; the areas whose colour the callers report
+//! as doubtful; and the difference between the regions' total area and the sub-pixel's area.
 
 use std::mem;
 
@@ -61,8 +61,8 @@ pub struct LocalBoard {
     /// Whether the second colour is on the square 0 ≤ a < 1, 0 ≤ b < 1, where a and b are the
     /// coordinates in `board`.
     pub odd: bool,
-    /// Maximum error of a value of the board's linear forms, divided by the size of the form's
-    /// terms.
+    /// Maximum error of a value of one of the board's linear forms c0·x + c1·y + c2, divided by the
+    /// maximum of |c0·x| + |c1·y| + |c2| in the sub-pixel.
     relative_error: f64,
 }
 
@@ -171,14 +171,16 @@ impl<'a> Regions<'a> {
     /// Returns the shares of the colours in all regions, with a bound of at most 1.
     pub fn finish(mut self) -> Shares {
         let mut shares = mem::take(&mut self.shares);
-        // Area that the regions omit or count twice may have any colour, so it counts as an error.
+        // Area that the regions omit or cover twice may have any colour, so it is added to the
+        // error bound.
         let total: f64 = shares.by_slot.iter().map(|(_, share)| share).sum();
         shares.bound += (1.0 - total).abs();
         if !(shares.bound.is_finite() && total > 0.0 && total < 2.0) {
             // Intermediate results must have overflowed, so that the shares are meaningless.
             return self.unknown();
         }
-        // The error of a channel of the pixel's mean colour is at most 1.
+        // The bound is limited to 1, because a channel of the pixel's mean colour cannot have a
+        // larger error.
         shares.bound = shares.bound.min(1.0);
         shares
     }

@@ -3,10 +3,11 @@
 //! In: the lines and conics that pass through a sub-pixel. Out: the regions between neighbouring
 //! curves in each slab, added to [`Regions`].
 //!
-//! Within a slab, each curve lies between its chord and its tangents. If these bounds do not
-//! exclude that two neighbours cross, the slab is cut: at the crossing if the order at one of the
-//! slab's ends shows it, otherwise in the middle. Not every crossing has to be found: if a slab is
-//! too narrow to cut, the area between its unseparated curves is added to the error bound.
+//! Within a slab, each curve lies between its chord and its tangents. If two neighbouring curves
+//! may cross according to these bounds, the slab is cut. It is cut at the crossing if the curves
+//! have a different order at one of the slab's ends, otherwise in the middle. Not every crossing
+//! has to be found: if a slab is too narrow to cut, the area between its unseparated curves is
+//! added to the error bound.
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
@@ -21,9 +22,10 @@ use super::{
     region::{Region, Regions, Shares},
 };
 
-/// Maximum distance in y, in pixels, by which curves may be out of order and still count as
-/// ordered. It is the maximum rounding error of the distance, the difference of two values of at
-/// most 1, each with an error of at most eight unit roundoffs.
+/// Maximum distance in y, in pixels, by which a curve may lie on the wrong side of its neighbour
+/// and still be treated as lying on the correct side. It is the maximum rounding error of the
+/// distance: the difference of two values of at most 1, each with an error of at most eight unit
+/// roundoffs.
 const ORDER_TOLERANCE: f64 = 16.0 * f64::UNIT;
 
 /// Maximum distance in y, in pixels, between neighbouring curves at which a slab (a vertical strip)
@@ -259,7 +261,8 @@ fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, r
             last = Ordering::Less;
         }
     }
-    // A cut closer to an end than half the minimum width would leave a slab that is too narrow.
+    // A cut closer to an end than half the minimum width would leave a slab that is too narrow. The
+    // slab is then cut in the middle.
     if inside > left + 0.5 * MIN_WIDTH && inside < right - 0.5 * MIN_WIDTH {
         inside
     } else {

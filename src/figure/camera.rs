@@ -18,8 +18,8 @@ use crate::{
     tracer::Hit,
 };
 
-/// Height of the figure, in SVG units, before empty space is cropped. Its width is 680. The scene
-/// is scaled to fit; in a lower figure, it would be smaller.
+/// Height of the figure, in SVG units, before empty space is cropped. The figure's width is 680.
+/// The scene is scaled to fit; in a lower figure, it would be smaller.
 const HEIGHT: f64 = 460.0;
 
 /// Maximum length of a ray that is drawn to its end, as a multiple of the distance from the eye to
@@ -158,8 +158,8 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     )
 }
 
-/// Returns the pixel in the middle of the object that takes the largest area in the picture.
-/// Checkerboards do not count. If there is no object, returns the middle of the picture.
+/// Returns the pixel in the middle of the object that covers the largest area of the picture.
+/// Checkerboards are ignored. If there is no other object, returns the middle of the picture.
 fn pixel_of_largest(scene: &Scene) -> [u32; 2] {
     let (seen, _) = seen(scene);
     let mut largest = (0.0, Area::whole(scene.image.width, scene.image.height));
@@ -176,10 +176,11 @@ fn pixel_of_largest(scene: &Scene) -> [u32; 2] {
     [around.x + around.width / 2, around.y + around.height / 2]
 }
 
-/// Returns the objects to draw, at most [`MOST_OBJECTS`], without checkerboards: for each, its
-/// index, and the centre and the radius of its bounding sphere. Only objects that are smaller than
-/// `reach` and near the eye compared with `reach` are drawn. Except for the object with the index
-/// `hit`, they must also be in front of the eye.
+/// Returns the objects to draw, at most [`MOST_OBJECTS`], without checkerboards. Each has its
+/// index, and the centre and the radius of its bounding sphere.
+///
+/// Objects whose radius or distance from the eye is large compared with `reach` are left out.
+/// Objects behind the eye are left out, too, except the one with the index `hit`.
 fn objects_within(
     scene: &Scene,
     view: &Projection,
@@ -202,9 +203,10 @@ fn objects_within(
     around.filter(is_within).take(MOST_OBJECTS).collect()
 }
 
-/// Returns the lines between the squares of the checkerboards. If there are many, only some are
-/// returned ([`MOST_LINES`]). The lines cover the area in which the points of the figure, `points`,
-/// lie. The corners of each board's drawn area are added to `points`.
+/// Returns lines between the squares of the checkerboards, within the area of the figure's points,
+/// `points`. If there are many lines, only about [`MOST_LINES`] in each direction are returned.
+/// Adds the corners of each board's drawn area to `points`. Boards much higher or lower than the
+/// eye, or with very large squares, are left out.
 fn boards(scene: &Scene, points: &mut Vec<DVec3>, reach: f64) -> Vec<[DVec3; 2]> {
     let mut lines = Vec::new();
     let (min, max) = bounds3(points);

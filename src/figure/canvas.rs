@@ -49,15 +49,15 @@ const MARGIN: f64 = 12.0;
 /// steps to leave a segment free. With a smaller cost, labels would cover more marks.
 const MARK: f64 = 40.0;
 
-/// Cost of a label that covers a diagonal of a filled polygon. About four diagonals stand for the
-/// polygon's area. Moving a label one step away from its point costs 6, which is less, so a label
-/// leaves the polygon if there is free space near it.
+/// Cost of a label for each diagonal of a filled polygon that it covers. A polygon has up to about
+/// four diagonals, which represent its area. Moving a label one step away from its point costs 6,
+/// which is less, so a label leaves the polygon if there is free space near it.
 const FILL: f64 = 7.0;
 
 /// A drawing, to which marks and labels are added.
 pub struct Canvas {
     size: DVec2,
-    /// Top and bottom of what has been drawn, in SVG units. Paths in SVG notation do not count.
+    /// Top and bottom of what has been drawn, in SVG units. Paths in SVG notation are ignored.
     rows: [f64; 2],
     marks: String,
     /// Line segments that labels should not cover, each with the cost of covering it.

@@ -89,8 +89,8 @@ pub fn draw(scene: &Scene, [x, y]: [u32; 2]) -> Result<String, String> {
     ))
 }
 
-/// Describes in words the cells into which a method divides the pixel, each of which contains one
-/// of the `n` samples.
+/// Describes in words the cells of a pixel, for a method that places one of the `n` samples in each
+/// cell.
 fn kept(method: Method, n: u64) -> String {
     let tilings = tilings(method, n);
     if tilings.len() > 3 {
@@ -110,10 +110,10 @@ fn kept(method: Method, n: u64) -> String {
     }
 }
 
-/// Draws the cells into which a method divides the pixel, each of which contains one of the `n`
-/// samples. The pixel is the square with the top left corner `corner` and the side `side`. A method
-/// may divide it in several ways ([`Tiling`]s). The lines of the first way are stronger, unless its
-/// cells are rows or columns.
+/// Draws the cells of a pixel, for a method that places one of the `n` samples in each cell. The
+/// pixel is a square with the top left corner `corner` and the side `side`. If the method divides
+/// the pixel in several ways at once ([`Tiling`]s), the lines of the first way are stronger, unless
+/// its cells are whole rows or columns.
 pub fn strata(canvas: &mut Canvas, method: Method, n: u64, corner: DVec2, side: f64) {
     let at = |x: f64, y: f64| corner + DVec2::new(x, y) * side;
     let tilings = if n > 0 { tilings(method, n) } else { vec![] };

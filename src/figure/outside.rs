@@ -43,7 +43,7 @@ impl Outside {
     /// towards the observer, and `up` points upwards in the drawing.
     pub fn new(points: &[DVec3], [side, up]: [DVec3; 2], panel: [DVec2; 2]) -> Self {
         let (min, max) = bounds3(points);
-        // Sums of unlimited coordinates could overflow.
+        // Sums of very large coordinates could overflow, so the coordinates are limited.
         let within = |v: DVec3| v.clamp(DVec3::splat(-MOST), DVec3::splat(MOST));
         let (min, max) = (within(min), within(max));
         let radius = ((max - min).length() / 2.0).max(1.0 / MOST);

@@ -13,8 +13,8 @@ use crate::{
     scene::{Camera, Scene},
 };
 
-/// Height of the figure, in SVG units, before empty space is cropped. Its width is 680. The
-/// pictures are scaled to fit; in a lower figure, they would be smaller.
+/// Height of the figure, in SVG units, before empty space is cropped. The figure's width is 680.
+/// The pictures are scaled to fit; in a lower figure, they would be smaller.
 const HEIGHT: f64 = 400.0;
 
 /// Number of straight segments by which the arc of the roll's angle is drawn. With 24, it looks

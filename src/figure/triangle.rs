@@ -14,8 +14,8 @@ use crate::{
     tracer::vertices,
 };
 
-/// Height of the figure, in SVG units, before empty space is cropped. Its width is 680. The
-/// triangle is scaled to fit; in a lower figure, it would be smaller.
+/// Height of the figure, in SVG units, before empty space is cropped. The figure's width is 680.
+/// The triangle is scaled to fit; in a lower figure, it would be smaller.
 const HEIGHT: f64 = 430.0;
 
 /// Number of straight segments by which the arc of the spin is drawn. With 24, it looks round.
@@ -69,8 +69,8 @@ pub fn draw(triangle: &Triangle) -> String {
     if is_spun {
         let [a, b, c] = unspun;
         outside.line(&mut canvas, "faint dash", &[a, b, c, a]);
-        // The arc is the path of a point while the triangle is rotated: the midpoint between the
-        // centroid and the right end of the base.
+        // The arc is the path of one point while the triangle is rotated. This point is the
+        // midpoint between the centroid and the right end of the base.
         let on_way = |i: u32| {
             let [_, right, _] = spun(spin * (f64::from(i) / f64::from(ARC)));
             outside.at(centroid.midpoint(right))

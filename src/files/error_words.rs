@@ -13,8 +13,8 @@ pub fn in_words(error: io::Error) -> io::Error {
     let kind = error.kind();
     let words = match kind {
         ErrorKind::NotFound => "there is no such file or folder",
-        // On Unix, the error number 1 is EPERM. Changing a file that is marked as immutable causes
-        // it, for example.
+        // On Unix, the error number 1 is EPERM. It occurs, for example, if a program changes a file
+        // that is marked as immutable.
         ErrorKind::PermissionDenied if cfg!(unix) && number.starts_with("1)") => {
             "the system protects it from being changed"
         }

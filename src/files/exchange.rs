@@ -13,16 +13,16 @@ use super::{
     original::{Original, changed, id},
 };
 
-/// Replaces the file at `path`, which was read as `original`, by the temporary file. Fails if the
-/// file at `path` is no longer `original`.
+/// Replaces the file at `path` by the temporary file. Fails if the file at `path` has changed since
+/// its content was recorded in `original`.
 ///
 /// Another program may save the file between the check and the replacement. Therefore, the two
-/// files exchange their names, and the replaced file is checked once more. If it is not `original`,
-/// the names are exchanged back, and the function fails. On systems that cannot exchange names, the
-/// file is replaced without this second check.
+/// files exchange their names, and the replaced file is checked once more. If it differs from
+/// `original`, the names are exchanged back, and the function fails. On systems that cannot
+/// exchange names, the file is replaced without this second check.
 pub fn replace(temporary: NamedTempFile, path: &Path, original: &Original) -> io::Result<()> {
-    // After the exchange, the old file has the temporary name. The lock keeps other processes from
-    // removing it, since they remove unlocked temporary files.
+    // After the exchange, the old file has the temporary name. Other processes of this program
+    // remove files with such names unless they are locked, so the old file is locked.
     let found = kind::open(path).ok();
     let _is_locked = found.as_ref().map(File::try_lock);
     original.check(path)?;
@@ -40,8 +40,8 @@ pub fn replace(temporary: NamedTempFile, path: &Path, original: &Original) -> io
     }
 }
 
-/// Exchanges the names back, so that the file with the temporary name gets its path again. If
-/// another program has saved a newer file at the path meanwhile, the newer file keeps the path.
+/// Undoes an exchange: the file that has the temporary name returns to `path`. If another program
+/// has meanwhile saved a newer file at `path`, the newer file stays there.
 fn bring_back(temporary: &NamedTempFile, path: &Path) -> io::Result<()> {
     let mut at_path = id(&temporary.as_file().metadata()?);
     loop {
@@ -84,13 +84,13 @@ mod tests {
 
     use super::*;
 
-    /// Number of the test's last round; the first is 0. From round to round, the other program
-    /// saves a little later. With 400, it saves before, during and after the replacement, and the
-    /// test still ends soon.
+    /// Number of the test's last round, where the first is 0. The other program saves a little
+    /// later in each round. With 400, it saves before, during and after the replacement. With far
+    /// fewer rounds, the latest moments would not be tested.
     const LAST: u32 = 400;
 
-    /// Another program saves the file, in each round at a later moment, from before the replacement
-    /// to after it. The file that it saves must never be lost.
+    /// In each round, another program saves the file at a later moment, from before the replacement
+    /// to after it. The saved file must never be lost.
     #[test]
     fn what_is_saved_meanwhile_stays() {
         let folder = tempdir().unwrap();
@@ -104,9 +104,9 @@ mod tests {
             let theirs = folder.path().join("theirs");
             fs::write(&theirs, "theirs").unwrap();
             let save = || fs::rename(&theirs, &path).unwrap();
-            // On a busy machine, the other program's thread may never run before the replacement,
-            // or never after it. Therefore, the first round saves before it, and the last round
-            // after it.
+            // On a busy machine, the other program's thread may always run too late, or always too
+            // early. Therefore, the first round saves before the replacement, and the last round
+            // after the replacement.
             let done = match round {
                 0 => {
                     save();

@@ -17,8 +17,7 @@ use super::{
     temporary::{self, locked},
 };
 
-/// Returns whether `error`, with which replacing a file failed, is a reason to overwrite the file
-/// in place.
+/// Returns whether a file should be overwritten in place because replacing it failed with `error`.
 pub fn is_reason(error: &io::Error) -> bool {
     use io::ErrorKind;
     matches!(
@@ -30,10 +29,10 @@ pub fn is_reason(error: &io::Error) -> bool {
     )
 }
 
-/// Overwrites the file at `path`, unless it has changed since it was read. In the meantime, a copy
-/// of the new content exists beside the file or in the user's state folder, so that nothing is lost
-/// if this process is killed. Fails if no copy can be created. The error is then `reason`, for
-/// which the file could not be replaced by a new one.
+/// Overwrites the file at `path`, unless it has changed since it was read as `original`. During the
+/// overwriting, a copy of the new content exists beside the file or in the user's state folder, so
+/// that nothing is lost if this process is killed. Fails with the error `reason` if no copy can be
+/// created. `reason` is the error with which replacing the file failed.
 pub fn write_in_place(
     path: &Path,
     original: &Original,
@@ -67,8 +66,8 @@ pub fn write_in_place(
     }
 }
 
-/// Returns the copies of a file, possibly incomplete, that were left by processes that were killed
-/// while they overwrote it. Searches beside the file and in the user's state folder.
+/// Returns the copies that processes left when they were killed while they overwrote a file. A copy
+/// may be incomplete. Searches beside the file and in the user's state folder.
 pub fn copies_left(path: &Path) -> Vec<PathBuf> {
     // Copies are named after the file itself, not after a link to it.
     let beside = match fs::read_link(path) {
@@ -97,15 +96,16 @@ fn copy_prefix(path: &Path) -> String {
 }
 
 /// Returns the prefix of the name of a copy in the user's state folder. The folder contains copies
-/// of files from all folders, so the prefix contains a hash of the file's path, `path`, which must
-/// be canonical.
+/// for files from all folders, so the prefix contains a hash of the file's path. This path, `path`,
+/// must be canonical.
 fn prefix_in_state(path: &Path) -> String {
     let digest = digest(path.as_os_str().as_encoded_bytes());
     format!("{digest}-{}", copy_prefix(path))
 }
 
-/// Creates an empty file for the copy of the file at `path`, which must be canonical. It lies
-/// beside the file or, if that fails, in the user's state folder. Returns `None` if both fail.
+/// Creates an empty temporary file, into which the new content of the file at `path` can be
+/// written. The temporary file lies beside `path` or, if that fails, in the user's state folder.
+/// `path` must be canonical. Returns `None` if no file can be created in either folder.
 fn copy_beside(path: &Path) -> Option<NamedTempFile> {
     let copy_in = |folder: &Path, prefix: &str| {
         let mut builder = Builder::new();

@@ -100,8 +100,9 @@ fn is_argument(path: &Path) -> bool {
             .any(|folder| path.parent() == Some(folder))
 }
 
-/// Opens a file that is named on the command line for reading. It must be a regular file, or a
-/// descriptor that the shell has opened, which may also be a pipe or a device.
+/// Opens for reading a file whose path is an argument on the command line. The path must lead to a
+/// regular file, or stand for a descriptor that the shell has opened. Such a descriptor may also be
+/// a pipe or a device.
 pub fn open_argument(path: &Path) -> io::Result<File> {
     if !is_argument(path) {
         return open(path);
@@ -129,8 +130,8 @@ fn open_at_once(path: &Path, is_wanted: impl Fn(FileKind) -> bool) -> io::Result
     Ok(file)
 }
 
-/// Sets flags for opening files: a pipe does not wait for its other end, and a terminal does not
-/// become the controlling terminal of this process.
+/// Sets flags for opening files: opening a named pipe does not wait for another process to open it,
+/// and opening a terminal does not make it the controlling terminal of this process.
 #[cfg(unix)]
 pub(super) fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
     use rustix::fs::OFlags;
@@ -143,7 +144,7 @@ pub(super) fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
     options
 }
 
-/// Makes reads and writes of an open pipe wait for its other end.
+/// Makes an open pipe or device blocking: reading waits for data, and writing waits for space.
 #[cfg(unix)]
 pub(super) fn wait_for_it(file: &File) -> io::Result<()> {
     use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};

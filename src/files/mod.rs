@@ -6,11 +6,11 @@
 //!   pipe.
 //! - `original` recognises whether a file has changed since it was read.
 //! - `write` writes files completely or not at all: a `temporary` file replaces the old one.
-//!   `exchange` exchanges the names of both, in case another program saves the old file at the same
-//!   moment. `in_place` overwrites a file that cannot be replaced.
+//!   `exchange` exchanges the names of the temporary and the old file, in case another program
+//!   saves the old file at the same moment. `in_place` overwrites a file that cannot be replaced.
 //! - `output_folder` replaces only files that Pinhole itself wrote into a folder.
 //! - `user_files` stores small private files in the user's `state` folder.
-//! - `system` reads what the system says about itself.
+//! - `system` reads text files of the operating system, such as `/proc/meminfo`.
 //! - `error_words` replaces the system's error messages by plain words.
 #![allow(
     clippy::disallowed_methods,

@@ -21,7 +21,7 @@ pub fn id(found: &Metadata) -> FileId {
     (found.dev(), found.ino())
 }
 
-/// Returns (0, 0), since the standard library gives files no numbers on this system.
+/// Returns (0, 0), since the standard library provides no inode numbers on this system.
 #[cfg(not(unix))]
 pub fn id(_: &Metadata) -> FileId {
     (0, 0)
@@ -34,14 +34,14 @@ pub struct Original(Option<(FileId, Vec<u8>)>);
 impl Original {
     /// Reads the file at `path` by the function `read`, and records the file's identity.
     pub fn read(path: &Path, read: impl FnOnce(&Path) -> io::Result<Vec<u8>>) -> io::Result<Self> {
-        // Another file may replace this one after its identity is recorded and before it is read.
-        // The recorded identity is then that of the old file, so the new file counts as changed,
-        // which is safe.
+        // Another program may replace the file after its identity is recorded and before its
+        // content is read. The recorded identity is then that of the old file. The new file will
+        // therefore be taken for changed and not be replaced, so nothing is lost.
         let found = fs::metadata(path).map_err(in_words)?;
         Ok(Self(Some((id(&found), read(path)?))))
     }
 
-    /// Makes the record that there was no file.
+    /// Returns a value that stands for a file that does not exist.
     pub fn missing() -> Self {
         Self(None)
     }
@@ -51,12 +51,12 @@ impl Original {
         self.0.as_ref().map(|(_, bytes)| bytes.as_slice())
     }
 
-    /// Fails if the file at `path` has changed since it was read. Does nothing if there was no
-    /// file.
+    /// Fails if the file at `path` has changed since it was read. Does nothing if no file existed
+    /// then.
     pub(super) fn check(&self, path: &Path) -> io::Result<()> {
         let Some((original, bytes)) = &self.0 else {
-            // There was no file, so there is nothing to compare. If another program has created one
-            // meanwhile, creating the new file fails.
+            // No file existed, so there is nothing to compare. If another program has created one
+            // since then, the function that creates the new file fails.
             return Ok(());
         };
         let is_same = || {

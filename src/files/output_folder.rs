@@ -1,8 +1,8 @@
 //! A folder for the output files of a command, in which files of the user are never replaced.
 //!
-//! The folder contains a list, `.pinhole`, of the files that Pinhole wrote there. For each file, it
-//! has the SHA-256 of its content, in the format that `sha256sum --check` reads. Any file that is
-//! not in the list, or has another hash, belongs to the user.
+//! The folder contains a list, `.pinhole`, of the files that Pinhole wrote there. The list contains
+//! the SHA-256 hash of each file's content, in the format that `sha256sum --check` reads. Any file
+//! that is not in the list, or has another hash, belongs to the user.
 
 use std::{
     collections::BTreeMap,
@@ -31,15 +31,16 @@ const HEAD: &str = "# Files that pinhole made here, and replaces unless they wer
 const LIST_LIMIT: u64 = 16 << 20;
 
 /// Maximum length, in bytes, of an existing file that may be replaced. Pinhole's output files are
-/// far shorter, so a longer file counts as changed by the user, and need not be read to know that.
+/// far shorter, so a longer file must have been changed by the user. It is not read completely.
 const FILE_LIMIT: u64 = 256 << 20;
 
 /// A folder for the output files of a command. No file of the user is replaced in it.
 #[derive(Debug)]
 pub struct OutputFolder {
     path: PathBuf,
-    /// The files that Pinhole wrote: for each path in the folder, with `/` between names, the
-    /// hashes that the file's content may have.
+    /// SHA-256 hashes of the files that Pinhole wrote, by the file's path in the folder, with `/`
+    /// between names. A file has two hashes, of its old and its new content, while it is being
+    /// written.
     hashes: BTreeMap<String, Vec<String>>,
 }
 
@@ -68,7 +69,7 @@ impl OutputFolder {
     /// # Errors
     ///
     /// The folder cannot be created or written to, or the user has a file with one of these names.
-    /// No file has then been written.
+    /// No file is written in this case.
     pub fn open<'n>(
         path: &Path,
         names: impl IntoIterator<Item = &'n str>,
@@ -106,9 +107,9 @@ impl OutputFolder {
     ///
     /// # Errors
     ///
-    /// The user has a file with one of the names, or a file cannot be written. This is usually
-    /// found before any file is written. Otherwise, the files before the failing one have been
-    /// written.
+    /// The user has a file with one of the names, or a file cannot be written. The check finds most
+    /// errors before any file is written. If a later error occurs, the files before the failing one
+    /// have been written.
     pub fn write<T: AsRef<[u8]>>(&mut self, files: &[(String, T)]) -> Result<(), NotWritten> {
         // Another process may have written files into the folder since it was opened, so the list
         // is read again.
@@ -116,8 +117,9 @@ impl OutputFolder {
         for (name, _) in files {
             self.check(name)?;
         }
-        // The new hashes are added to the list before any file is written. Whenever this process is
-        // ended, each file then has its old or its new hash in the list.
+        // The new hashes are added to the list before any file is written. If this process is
+        // killed while it writes, the list contains the hash of each file's old content and of its
+        // new content.
         for (name, text) in files {
             let hashes = self.hashes.entry(name.clone()).or_default();
             let hash = hash(text.as_ref());
@@ -162,8 +164,8 @@ impl OutputFolder {
         Ok(list)
     }
 
-    /// Writes `hashes` into the list [`LIST`], unless they are its content already. Fails if the
-    /// file has changed since it was read as `original`.
+    /// Writes `hashes` into the list [`LIST`], unless the list already contains exactly these
+    /// hashes. Fails if the list has changed since it was read as `original`.
     fn write_list(&self, original: &Original) -> Result<(), NotWritten> {
         let text = self.list();
         if original.bytes() == Some(text.as_bytes()) {

@@ -1,4 +1,4 @@
-//! Reads what the system says of itself.
+//! Reads text files of the operating system.
 
 use std::{fs::File, io::Read, path::Path};
 

@@ -12,10 +12,9 @@ use tempfile::NamedTempFile;
 
 use super::kind;
 
-/// Maximum number of files that are created in the attempt to lock one; after that, writing fails.
-/// Other processes may lock a new file for a moment, while they look for leftover files, but hardly
-/// a hundred times in a row. Without a limit, a program that removes every new file would make the
-/// loop endless.
+/// Maximum number of files that are created in order to lock one. Another process may lock a new
+/// file for a moment while it looks for leftover files, but hardly a hundred times in a row.
+/// Without a limit, the loop would be endless if a program removed every new file.
 const MOST_TRIES: usize = 100;
 
 /// Calls `make`, which creates a file, until the file can be locked, at most [`MOST_TRIES`] times.
@@ -23,8 +22,8 @@ const MOST_TRIES: usize = 100;
 pub fn locked(mut make: impl FnMut() -> io::Result<NamedTempFile>) -> io::Result<NamedTempFile> {
     for _ in 0..MOST_TRIES {
         let file = make()?;
-        // If the file system has no locks, other processes cannot lock the file either, so it
-        // counts as locked.
+        // If the file system does not support locks, no other process can lock the file. The file
+        // is therefore used without a lock.
         let is_locked = !matches!(file.as_file().try_lock(), Err(TryLockError::WouldBlock));
         // Before the file was locked, another process may have removed it as a leftover.
         if is_locked && file.path().exists() {
@@ -36,8 +35,8 @@ pub fn locked(mut make: impl FnMut() -> io::Result<NamedTempFile>) -> io::Result
 }
 
 /// Returns the unlocked files in a folder, with their names. They were left by processes that were
-/// killed. Only names of the form `prefix`, six random characters, `suffix` count. The returned
-/// files are locked until they are closed.
+/// killed. A name must consist of `prefix`, six random characters and `suffix`; other files are
+/// ignored. The returned files are locked until they are closed.
 pub fn left(folder: &Path, prefix: &str, suffix: &str) -> Vec<(OsString, File)> {
     let is_ours = |name: &OsString| {
         let name = name.to_str();

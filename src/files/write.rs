@@ -26,19 +26,19 @@ impl<T: Write + Seek> Sink for T {}
 /// Purpose of a file that is written. It decides which existing file may be replaced.
 #[derive(Clone, Copy, Debug)]
 pub enum Purpose<'a> {
-    /// The user named the file. An existing file is replaced, and links are followed. If it is a
-    /// pipe or a device, the whole content is written to it at once.
+    /// The user named the file. An existing file is replaced, and links are followed. A pipe or a
+    /// device is also allowed; the content is written to it when it is complete.
     Named,
     /// Pinhole chose the name of a file in this folder. An existing file is replaced. Links are
     /// followed, unless they lead out of the folder.
     Within(&'a Path),
-    /// Pinhole chose the name of a file in a folder, and has tried to read the file before. An
-    /// existing file is replaced only if it has not changed since. If there was none, the file must
-    /// be new.
+    /// Pinhole chose the name of a file in a folder, and has tried to read the file before. If the
+    /// file existed then, it is replaced only if it has not changed since. If it did not exist
+    /// then, writing fails if it exists now.
     Again {
         /// The folder that a link must not lead out of.
         within: &'a Path,
-        /// The file as it was read.
+        /// The file as it was read before, or the record that it did not exist.
         original: &'a Original,
     },
     /// Pinhole chose the name of a private file in this folder, which no other user can read. An
@@ -62,8 +62,8 @@ impl<'a> Purpose<'a> {
         }
     }
 
-    /// Returns the file as it was read before, or `None` if it was not read. If it has changed
-    /// since, it is not replaced.
+    /// Returns the earlier content of the file, or `None` if the file was not read before. A file
+    /// that has changed since it was read is not replaced.
     fn original(self) -> Option<&'a Original> {
         match self {
             Self::Change(original) | Self::Again { original, .. } => Some(original),
@@ -75,14 +75,16 @@ impl<'a> Purpose<'a> {
 /// Writes the file at `path` with the content that the function `write` produces. The old file
 /// stays unchanged until the new content is complete.
 ///
-/// The content goes into a temporary file in the same folder, which then replaces the old file. It
-/// gets the old owner, if the system allows that, and the old permissions except setuid, setgid and
-/// the sticky bit. Other hard links keep the old content.
+/// The content goes into a temporary file in the same folder, which then replaces the old file. The
+/// new file gets the old owner, if the system allows that, and the old permissions except setuid,
+/// setgid and the sticky bit. Other hard links keep the old content.
 ///
-/// If a file that was read cannot be replaced in this way, it is overwritten in place, and a copy
-/// of the new content exists meanwhile. If `cancel` is set or an error occurs, the temporary file
-/// is removed. If this process is killed, the temporary file is removed when the file is next
-/// written.
+/// With [`Purpose::Change`], a file that cannot be replaced, for example because its folder is
+/// read-only, is overwritten in place. A copy of the new content then exists until the file is
+/// complete.
+///
+/// If `cancel` is set or an error occurs, the temporary file is removed. If this process is killed,
+/// the temporary file stays until a process writes to the same `path` again.
 pub fn write(
     path: &Path,
     purpose: Purpose<'_>,
@@ -120,8 +122,9 @@ fn write_at_once(
     }
 }
 
-/// Writes the content that the function `write` produces to a stream, such as standard output. If
-/// `cancel` is set meanwhile, fails; bytes that were already written stay written.
+/// Writes the content that the function `write` produces to a stream, such as standard output.
+/// Fails if `cancel` is set before everything is written. The bytes that were written before stay
+/// written.
 pub fn write_stream(
     sink: impl Write,
     cancel: &AtomicBool,
@@ -132,8 +135,8 @@ pub fn write_stream(
     out.flush()
 }
 
-/// Checks whether a file can be written at `path`, as far as that can be known before, so that the
-/// user learns of an error before a long render.
+/// Checks whether a file can be written at `path`, so that the user learns of an error before a
+/// long render. A full disk, for example, cannot be found in advance.
 pub fn check_writable(path: &Path, purpose: Purpose<'_>) -> io::Result<()> {
     let is_writable = match target(path, purpose) {
         Ok(WriteTarget::File(target)) => temporary(&target, purpose).and_then(NamedTempFile::close),
@@ -191,8 +194,8 @@ fn target(path: &Path, purpose: Purpose<'_>) -> io::Result<WriteTarget> {
     Ok(target)
 }
 
-/// Fails if the file lies outside of the folder that `purpose` allows. This is checked more than
-/// once, since a link may be changed meanwhile.
+/// Fails if the file lies outside of the folder that `purpose` allows. Another program may change a
+/// link at any time, so this check is repeated just before the file is replaced.
 fn check_folder(target: &FileTarget, purpose: Purpose<'_>) -> io::Result<()> {
     let Some(outer) = purpose.outer() else {
         return Ok(());
@@ -209,9 +212,9 @@ fn behind_links(path: &Path) -> io::Result<WriteTarget> {
     match fs::metadata(path) {
         Ok(found) => match FileKind::of(&found) {
             FileKind::File => {
-                // The system lets anyone who may write to the folder replace the file. Its owner,
-                // however, may have made the file read-only to protect it, so the file itself must
-                // be writable.
+                // Opening the file for writing tests its permissions. The system lets anyone who
+                // may write to the folder replace the file, but its owner may have made it
+                // read-only to protect it.
                 without_waiting(OpenOptions::new().write(true)).open(path)?;
                 Ok(WriteTarget::File(FileTarget {
                     path: fs::canonicalize(path)?,
@@ -222,8 +225,8 @@ fn behind_links(path: &Path) -> io::Result<WriteTarget> {
             kind => Err(kind.refused()),
         },
         Err(error) if error.kind() == io::ErrorKind::NotFound => match fs::read_link(path) {
-            // The link leads to a file that does not exist, which is created. If links form a
-            // cycle, the system reports another error.
+            // The link leads to a file that does not exist, so the new file is created at the end
+            // of the link. If links form a cycle, the system reports another error.
             Ok(target) => behind_links(&folder(path).join(target)),
             Err(_) => Ok(WriteTarget::File(FileTarget {
                 path: path.to_owned(),
@@ -253,7 +256,8 @@ fn replace(
     temporary.as_file().sync_all()?;
     check(cancel)?;
     check_folder(target, purpose)?;
-    // If the file was read, another program may have changed it while the content was written.
+    // If the file was read before, another program may have changed it while the content was
+    // written, so the replacement compares the file with `original` again.
     let (must_be_new, refused) = match purpose.original() {
         Some(original) if original.bytes().is_some() => {
             return exchange::replace(temporary, &target.path, original);
@@ -279,7 +283,7 @@ fn exists() -> io::Error {
 }
 
 /// Writes the content to a pipe or a device once it is complete. Fails if no program has opened the
-/// pipe's other end. Writing waits until the other program has read everything.
+/// pipe's other end. Waits while the pipe is full.
 fn write_device(
     path: &Path,
     cancel: &AtomicBool,
@@ -315,19 +319,19 @@ const SUFFIX: &str = ".tmp";
 fn temporary(target: &FileTarget, purpose: Purpose<'_>) -> io::Result<NamedTempFile> {
     let FileTarget { path, found } = target;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    // Most systems allow 255 bytes for a name. A character takes at most four bytes, so 50 of them
-    // leave room for the rest of the name.
+    // Most systems limit a name to 255 bytes. A character has at most four bytes, so 50 characters
+    // leave room for the prefix, the six random characters and the suffix.
     let name: String = name.chars().take(50).collect();
     let prefix = format!(".pinhole-{name}-");
     remove_leftovers(folder(path), &prefix);
-    // By default, other users cannot read a temporary file.
+    // By default, other users cannot read a temporary file. A private file keeps these permissions.
     let is_private = matches!(purpose, Purpose::Private(_));
     let mut builder = Builder::new();
     builder.prefix(&prefix).suffix(SUFFIX);
     #[cfg(unix)]
     if found.is_none() && !is_private {
-        // These are the usual permissions of a new file. The system removes those that the user's
-        // umask forbids.
+        // A new file gets the usual permissions. The system removes those that the user's umask
+        // forbids.
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     }
     let temporary = locked(|| builder.tempfile_in(folder(path)))?;

@@ -13,11 +13,10 @@ use crate::color::linear_to_srgb;
 /// Number of steps of 8-bit sRGB between black and white.
 const STEPS: f64 = 255.0;
 
-/// Bound on the rounding errors of converting a channel to sRGB and back, in steps of 8-bit sRGB. A
-/// difference exceeds a tolerance only if it does so by more than this bound, so that rounding
-/// alone never decides. The linear part and the power part of the sRGB curve do not meet exactly:
-/// their gap is up to 3e-8 of the range from black to white, i.e. 8e-6 steps. Other roundings are
-/// below 1e-12 steps.
+/// Bound on the rounding errors of converting a channel to sRGB and back, in steps of 8-bit sRGB.
+/// It is added to the tolerance, so that pictures never differ because of rounding alone. The
+/// linear part and the power part of the sRGB curve do not meet exactly: their gap is up to 3e-8 of
+/// the range from black to white, i.e. 8e-6 steps. Other roundings are below 1e-12 steps.
 const SLACK: f64 = 1e-5;
 
 /// Slope of the sRGB curve at black, where it is steepest, in steps of 8-bit sRGB per unit of
@@ -32,8 +31,8 @@ pub const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 pub struct Tolerance<'a> {
     /// Tolerance that is the same for all pixels, in steps of 8-bit sRGB.
     pub steps: f64,
-    /// Error bound of each pixel's mean, in linear light, row by row. It is converted to steps and
-    /// added to `steps`. `None` if the pictures have no error bounds.
+    /// Bound on the error of each pixel's colour, in linear light, row by row. It is converted to
+    /// steps and added to `steps`. `None` if the pictures have no error bounds.
     pub bounds: Option<&'a [f32]>,
 }
 
@@ -54,11 +53,11 @@ pub struct Comparison {
     pub width: u32,
     /// Number of rows of both pictures.
     pub height: u32,
-    /// Root mean square of the differences over all channels of all pixels. It is in linear light
-    /// and from 0 to 1.
+    /// Root mean square of the differences over all channels of all pixels, in linear light, from 0
+    /// to 1.
     pub rmse: f64,
-    /// The largest difference. If several are equally large, it is the first of them in the order
-    /// of rows.
+    /// The largest difference. If several are equally large, the first one is reported, row by row
+    /// from the top.
     pub largest: Largest,
     /// Number of pixels that differ by more than the tolerance.
     pub beyond: u64,
@@ -190,9 +189,10 @@ pub fn rmse(a: &Film, b: &Film) -> Result<f64, SizesDiffer> {
     Ok((sum / (3.0 * a.pixels().len() as f64)).sqrt())
 }
 
-/// Draws the differences of two pictures of one size. Differences within the tolerance are black.
-/// Larger ones go through red and yellow to white at 255 steps of 8-bit sRGB. The colour is linear
-/// in the largest difference of a pixel's channels, so that noise stays dark.
+/// Draws a heat map of the differences between two pictures of the same size. A pixel is black if
+/// its difference is within the tolerance. Larger differences are drawn from black through red and
+/// yellow to white, which stands for 255 steps of 8-bit sRGB. The colour's sRGB values are linear
+/// in the difference, so small differences, such as noise, stay dark.
 ///
 /// # Errors
 ///

@@ -7,8 +7,8 @@ use base64::{Engine, prelude::BASE64_STANDARD};
 use super::{mean::mean, memory::TooLarge, pixels::Film, png::write_png};
 use crate::area::Area;
 
-/// Reduces a picture to at most `columns` × `rows` pixels, by averaging squares of pixels in linear
-/// light.
+/// Reduces a picture to at most `columns` × `rows` pixels. Each new pixel is the mean of a square
+/// of pixels in linear light.
 ///
 /// # Errors
 ///
@@ -32,7 +32,7 @@ pub fn reduced(film: &Film, [columns, rows]: [u32; 2]) -> Result<Film, TooLarge>
 ///
 /// # Errors
 ///
-/// The picture cannot be encoded, such as one without pixels.
+/// PNG cannot encode the picture, for example because it has no pixels.
 pub fn data_uri(film: &Film) -> io::Result<String> {
     let mut bytes = Vec::new();
     write_png(film, None, &mut bytes)?;

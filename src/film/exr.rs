@@ -1,7 +1,7 @@
-//! OpenEXR files: pixels' means in linear light, as 32-bit floats in the channels R, G and B.
+//! OpenEXR files: the pixels' colours in linear light, as 32-bit floats in the channels R, G and B.
 //!
-//! The format's display window is the area of the whole picture. Its data window is the part that
-//! the file contains.
+//! The format's display window is the area of the whole picture. Its data window is the part of the
+//! picture that the file contains.
 
 use std::io;
 
@@ -94,9 +94,9 @@ fn write(film: LinearFilm, part: Area, whole: Area, out: &mut dyn Sink) -> io::R
         <(f32, f32, f32)>::from(film.pixel(x as u32, y as u32))
     });
     let encoding = Encoding {
-        // Blocks of 16 rows compress better. For very wide pictures, they would take more memory
-        // than the film, since each block is in memory several times, so these have blocks of one
-        // row.
+        // Blocks of 16 rows compress better than single rows. Several copies of a block are in
+        // memory at once, which for a very wide picture would need more memory than the film. Very
+        // wide pictures are therefore written in blocks of one row.
         compression: match film.width() {
             0..=0x1_0000 => Compression::ZIP16,
             _ => Compression::ZIP1,

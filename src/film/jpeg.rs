@@ -1,9 +1,10 @@
 //! The compression of a JPEG file, and its effect on other pictures.
 //!
 //! In: a file. Out: its quantization tables for luma (brightness) and chroma (colour), and its
-//! chroma subsampling. Luma has the first table in the file, and chroma the second, as programs
-//! write them; a single table serves both. A lossy WebP is treated as a JPEG with 2 × 2 subsampling
-//! and the quantization step [`WEBP_STEP`].
+//! chroma subsampling. The first table in the file is taken for luma and the second for chroma,
+//! since programs usually write them in this order. If the file has a single table, it is used for
+//! luma and chroma. A lossy WebP is treated as a JPEG with 2 × 2 subsampling and the quantization
+//! step [`WEBP_STEP`].
 
 use image::ImageFormat;
 use jpeg_encoder::{
@@ -30,7 +31,7 @@ pub struct Jpeg {
 /// coefficient is rounded to a multiple of its step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JpegTable {
-    /// Square of the step by which the mean of a block is rounded.
+    /// Square of the quantization step of a block's mean.
     pub first: f64,
     /// Mean of the squares of all 64 steps.
     pub mean: f64,
@@ -116,8 +117,9 @@ impl Jpeg {
         }
     }
 
-    /// Compresses a picture as this JPEG was, and decodes the result. `bytes` are its red, green
-    /// and blue bytes, row by row. Returns `None` if the encoder does not support the compression.
+    /// Compresses a picture with the quantization tables and the subsampling of this JPEG, and
+    /// decodes the result. `bytes` contains the picture's red, green and blue bytes, row by row.
+    /// Returns `None` if the encoder does not support the subsampling or the picture's size.
     pub fn coded(&self, bytes: &[u8], [width, height]: [u32; 2]) -> Option<Vec<u8>> {
         let mut file = Vec::new();
         let mut encoder = Encoder::new(&mut file, 100);
@@ -146,8 +148,9 @@ pub fn is_whole(bytes: &[u8]) -> bool {
     // The position starts after the two bytes that begin every JPEG.
     let mut at = 2;
     loop {
-        // In compressed pixels, 0 follows a byte of 255 that is not a marker. The markers 0xd0 to
-        // 0xd7, which let a decoder restart, are part of the compressed pixels.
+        // In compressed pixels, a data byte of 255 is followed by 0, so this pair is not a marker.
+        // The markers 0xd0 to 0xd7, at which a decoder can restart, are part of the compressed
+        // pixels.
         let is_marker = |pair: &[u8]| pair[0] == 0xff && !matches!(pair[1], 0 | 0xd0..=0xd7 | 0xff);
         let rest = bytes.get(at..).unwrap_or_default();
         let Some(found) = rest.windows(2).position(is_marker) else {

@@ -6,8 +6,8 @@ use crate::math::{Double, Real, two_product};
 /// `seen` yields each colour with the count of its samples, and n is the sum of the counts.
 ///
 /// Sums and quotients are computed with double-doubles, i.e. sums of two `f64`, with relative
-/// errors of about 2^−100. The colours come in the order of the palette, so that equal counts give
-/// equal bits. A single colour is returned unchanged.
+/// errors of about 2^−100. The order of the colours may change the last bit, so callers pass them
+/// in a fixed order. A single colour is returned unchanged.
 pub fn mean(seen: impl Iterator<Item = (u64, [f64; 3])>) -> [f64; 3] {
     let mut samples = 0;
     let mut sums = [Double::from_f64(0.0); 3];
@@ -21,9 +21,9 @@ pub fn mean(seen: impl Iterator<Item = (u64, [f64; 3])>) -> [f64; 3] {
     sums.map(|sum| quotient(&sum, samples as f64))
 }
 
-/// Returns `sum`/`count`, rounded only by the last addition. It is computed in two steps of long
-/// division. The first step divides the leading part of `sum`. The second divides the remainder of
-/// the first, which is exact except for the rounding when the trailing part, `sum.lo`, is added.
+/// Returns `sum`/`count`, rounded only by the last addition. The quotient is computed in two steps
+/// of long division: first the leading part of `sum` is divided, then the remainder. The remainder
+/// is exact, except that adding the trailing part, `sum.lo`, rounds it.
 fn quotient(sum: &Double, count: f64) -> f64 {
     let first = sum.hi / count;
     let product = two_product(first, count);

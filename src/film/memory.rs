@@ -62,8 +62,8 @@ pub fn reserve(width: u32, height: u32, bytes_per_pixel: u64) -> Result<(), TooL
 
 /// Returns the number of bytes that this process may still allocate: the machine's available
 /// memory, or less if the process's control group has a limit. Returns `None` if the system does
-/// not report it, as on systems other than Linux. Without this check, a system that promises more
-/// memory than it has could later kill the process.
+/// not report the number; only Linux does. The check is needed because Linux may grant more memory
+/// than exists, and later kill the process.
 fn available() -> Option<u64> {
     [machine(), control_group()].into_iter().flatten().min()
 }
@@ -89,8 +89,8 @@ fn control_group() -> Option<u64> {
 }
 
 /// Returns the number of bytes that a control group may still allocate, or `None` if it has no
-/// limit. Its usage includes cached file pages, which the system frees on demand, so they do not
-/// count.
+/// limit. The group's usage includes cached file pages. They are subtracted, since the system frees
+/// them on demand.
 fn left(group: &Path) -> Option<u64> {
     let read = |name| read_system_text(group.join(name));
     // A group without a limit has the word `max` in the file `memory.max`. It is not a number, so

@@ -2,8 +2,9 @@
 //!
 //! In: the number of samples of each colour in a pixel. Out: their mean in linear light (`mean`),
 //! `pixels` in memory, and picture files (`png`, which also contains the scene, and `exr`). `read`
-//! reads a `picture` from a file of any program, with a module for each format that needs one.
-//! `compare` measures the differences of two pictures, and `embed` encodes them for an HTML page.
+//! reads a `picture` from a file of any program. It decodes some formats in modules of their own,
+//! such as `pnm` and `read_exr`, and the others with libraries. `compare` measures the differences
+//! of two pictures, and `embed` encodes them for an HTML page.
 
 mod compare;
 #[cfg(feature = "pages")]

@@ -1,7 +1,7 @@
 //! Recognises files that were given instead of a picture, such as web pages, and says what to do.
 
-/// Kinds of files that users may give instead of a picture. Each has the first bytes of such files
-/// and the description for the error message.
+/// Kinds of files that users may give instead of a picture. Each entry contains the first bytes of
+/// such files and the description for the error message.
 const BEGINNINGS: [(&[u8], &str); 8] = [
     (
         b"version https://git-lfs",

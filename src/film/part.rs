@@ -3,20 +3,20 @@
 use super::pixels::Film;
 use crate::area::Area;
 
-/// Approximate maximum number of pixel comparisons in the search for a part's position. It bounds
-/// the time of the search. With fewer comparisons, a wrong position could be found. At each
-/// position, between 16 and 400 pixels are compared, at equal distances in the part.
+/// Approximate maximum number of pixels that are compared in the search for a part's position,
+/// summed over all positions. A larger number makes the search slower. A smaller number makes a
+/// wrong result more likely, since fewer pixels are compared at each position: at least 16, and at
+/// most 400.
 const MAX_COMPARED: u64 = 100_000_000;
 
-/// Maximum ratio of two sums of squared differences between the part and the whole picture: the sum
-/// at the best position, and the mean of the sums at all positions. Above it, no position is
-/// returned. At the right position, usual sampling noise leaves a far smaller ratio; at a wrong
-/// one, the ratio is near 1. Any value well between the two works.
+/// Maximum ratio of the smallest sum of squared differences at any position to the mean of the sums
+/// at all positions. If the ratio is larger, no position is returned. The usual noise of sampling
+/// leaves a ratio far below this limit at the right position. If the part does not fit anywhere,
+/// the ratio is near 1.
 const MAX_LEFT: f64 = 0.2;
 
-/// Minimum share of the whole picture's area that a part must have. For a smaller part, no position
-/// is returned, since few pixels may also fit at a wrong position. The value is a guess at how many
-/// pixels are enough.
+/// Minimum share of the whole picture's area that a part must have. No position is returned for a
+/// smaller part, since its few pixels may also fit at a wrong position. The value is a guess.
 const MIN_SHARE: f64 = 0.05;
 
 /// Finds the position in the whole picture at which a part fits far better than elsewhere. Returns

@@ -11,7 +11,7 @@ pub struct Picture {
     pub film: Film,
     /// Precision to which the file's numbers are rounded.
     pub rounding: Rounding,
-    /// How the file's format changes colours, besides rounding.
+    /// Change of colours by the file's format, besides rounding.
     pub coding: Coding,
     /// The part of the whole picture that the file contains; `None` if the file does not say so.
     pub crop: Option<Area>,
@@ -59,9 +59,9 @@ impl Rounding {
     /// Returns the maximum rounding error of a number between 0 and 1, in steps of 8-bit sRGB, i.e.
     /// in 1/255 of the way from black to white.
     ///
-    /// Floats have relative rounding errors of 2^−11 (16 bits) or 2^−24 (32 bits). In steps, the
-    /// error is greatest at white, where the sRGB curve has the slope 255 · 1.055/2.4 steps per
-    /// unit of light. The products are rounded up.
+    /// Floats have relative rounding errors of 2^−11 (16 bits) or 2^−24 (32 bits). The error in
+    /// steps is greatest at white, where the slope of the sRGB curve is 255 · 1.055/2.4 steps per
+    /// unit of light. The values for floats are this slope times 2^−11 or 2^−24, rounded up.
     pub fn steps(self) -> f64 {
         match self {
             Self::Byte => 0.5,

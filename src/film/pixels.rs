@@ -6,15 +6,16 @@ use super::{
 };
 use crate::area::Area;
 
-/// Type of a pixel in a film: its mean in linear light as 64-bit floats, the mean as 32-bit floats,
-/// or bytes of sRGB, which take an eighth of the memory of 64-bit floats.
+/// Type of a pixel in a film: the mean colour of its samples in linear light, as 64-bit or 32-bit
+/// floats, or this colour as bytes of sRGB. The bytes need an eighth of the memory of 64-bit
+/// floats.
 pub trait Pixel: Copy + Default + Send + Sync {
     /// Converts the mean `light`, in linear light, to this type.
     fn of(light: [f64; 3], encoder: &Encoder) -> Self;
 
-    /// Returns whether the pixel's value is certain, i.e. whether all means within `bound` of
-    /// `light` in each channel are converted to the same value. Means as 64-bit floats count as
-    /// certain if they give the same 32-bit floats, because EXR files contain those.
+    /// Returns whether all colours within `bound` of `light` in each channel are converted to the
+    /// same pixel. 64-bit floats are first rounded to 32 bits for this comparison, because EXR
+    /// files contain 32-bit floats.
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool;
 }
 
@@ -30,8 +31,8 @@ impl Pixel for [f64; 3] {
     }
 
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool {
-        // In an EXR file, these means become 32-bit floats, so it suffices that the floats are
-        // certain.
+        // An EXR file contains 32-bit floats, so it suffices that the colour is certain after it is
+        // rounded to 32 bits.
         <[f32; 3]>::is_certain(light, bound, encoder)
     }
 }
@@ -83,7 +84,7 @@ impl AsBytes for [u8; 3] {
     }
 }
 
-/// A picture in memory. By default, its pixels are means in linear light.
+/// A picture in memory. By default, a pixel is a colour in linear light, as 64-bit floats.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film<P = [f64; 3]> {
     width: u32,
@@ -100,8 +101,8 @@ impl<P: Pixel> Film<P> {
     /// There is not enough memory for the picture.
     pub fn new(width: u32, height: u32) -> Result<Self, TooLarge> {
         memory::reserve(width, height, size_of::<P>() as u64)?;
-        // This zeroed memory comes from the system, which allocates each memory page only when
-        // something is written to it.
+        // `vec!` requests zeroed memory, since the default pixel is 0. The system allocates a page
+        // of it only when something is written to the page.
         Ok(Self {
             width,
             height,
@@ -211,8 +212,9 @@ impl<P: Pixel> Film<P> {
     }
 }
 
-/// Returns the number of pixels whose bytes of sRGB are certain, i.e. the same for all means within
-/// the error bound. `bounds` contains the error bound of each pixel's mean, in linear light.
+/// Returns the number of pixels whose bytes of sRGB are certain, i.e. the same for all colours
+/// within the error bound. `bounds` contains the error bound of each pixel's colour, in linear
+/// light.
 pub fn certified(film: &Film, bounds: &[f32]) -> u64 {
     let encoder = Encoder::default();
     let is_certain = |&(&light, &bound): &(&[f64; 3], &f32)| {

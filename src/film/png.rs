@@ -1,9 +1,9 @@
 //! PNG files: pixels in 8-bit sRGB, and the text of the scene that the picture shows.
 //!
-//! Before the pixels, the file contains compressed iTXt chunks with these keywords: `Software`;
-//! `pinhole:scene`, the scene's text; `pinhole:set` for each `--set` argument; and `pinhole:crop`,
-//! the rendered part as `X,Y,W,H`. It contains no date and nothing about the machine, so that equal
-//! scenes give equal files.
+//! Before the pixels, the file contains compressed iTXt chunks with these keywords: `Software`,
+//! Pinhole's version; `pinhole:scene`, the scene's text; `pinhole:set` for each `--set` argument;
+//! and `pinhole:crop`, the rendered part as `X,Y,W,H`. The file contains no date and nothing about
+//! the machine, so that equal scenes give equal files.
 
 use std::io::{self, Write};
 
@@ -48,7 +48,7 @@ pub struct Recipe {
     pub crop: Option<Area>,
 }
 
-/// Why the scene of a picture cannot be read from its PNG file.
+/// Error: the scene of a picture cannot be read from its PNG file.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum NotOurs {
@@ -69,13 +69,14 @@ pub enum NotOurs {
     /// A text in the file is not UTF-8.
     #[error("the picture carries a scene or an override that is not UTF-8 text")]
     NotUtf8,
-    /// The crop in the file is not a valid area. The field has the crop's text from the file.
+    /// The crop in the file is not a valid area. The field contains the invalid text.
     #[error("the picture carries a crop that makes no sense, `{0}`")]
     Crop(String),
 }
 
 impl Recipe {
-    /// Returns whether a PNG stores these texts, i.e. whether they are within the limits.
+    /// Returns whether a PNG stores the recipe's texts: their total length and the number of
+    /// overrides must be within the limits.
     pub fn fits(&self) -> bool {
         let overrides: usize = self.overrides.iter().map(String::len).sum();
         let crop = self.crop.map_or(0, |crop| crop.to_string().len());
@@ -107,9 +108,9 @@ pub fn write_png<P: AsBytes>(
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
-    // Pictures of scenes have flat colours, so their rows repeat. Such rows compress better without
-    // PNG's filters, which store differences of neighbours. Compression levels above 3 make files
-    // smaller by a few hundredths, but take three times as long.
+    // Pictures of scenes have flat colours, so their rows repeat. Equal rows compress better
+    // without PNG's filters, which store differences of neighbours. Compression levels above 3 make
+    // files a few percent smaller, but need three times as long.
     encoder.set_filter(Filter::NoFilter);
     encoder.set_deflate_compression(DeflateCompression::Level(3));
     let mut writer = encoder.write_header()?;
@@ -136,8 +137,8 @@ pub fn write_png<P: AsBytes>(
     Ok(())
 }
 
-/// Reads the scene and its overrides from a PNG file. Stops at the pixels. At most [`TEXT_LIMIT`]
-/// bytes of text are unpacked.
+/// Reads the scene and its overrides from a PNG file. Nothing after the start of the pixels is
+/// read. At most [`TEXT_LIMIT`] bytes of text are unpacked.
 ///
 /// # Errors
 ///

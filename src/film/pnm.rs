@@ -2,9 +2,9 @@
 //! write. The types P1 to P6 are read.
 //!
 //! Shells and systems may damage such files. The damage is repaired if it can be recognised for
-//! certain: a byte order mark or lines of text in front, UTF-16 instead of bytes, or a carriage
-//! return inserted before every line feed. Missing numbers and numbers out of range are reported
-//! with their position. The crate `image` reads PAM files.
+//! certain: a byte order mark or lines of text in front, UTF-16 or UTF-8 instead of bytes, or a
+//! carriage return inserted before every line feed. Missing numbers and numbers out of range are
+//! reported with their position. The crate `image` reads PAM files.
 
 use super::{
     memory,
@@ -14,9 +14,9 @@ use super::{
 };
 use crate::color::srgb_to_linear;
 
-/// Number of bytes at the start of a file in which a picture is searched for. A program may print
-/// messages before its picture; if they are longer than this, the picture is not found. Usual
-/// messages are far shorter.
+/// Maximum length, in bytes, of the text before a picture. A program may print messages before its
+/// picture. If the messages are longer than this limit, the picture is not found. Usual messages
+/// are far shorter.
 const LINES_BEFORE: usize = 1 << 16;
 
 const BOM: &[u8] = b"\xef\xbb\xbf";
@@ -58,8 +58,8 @@ pub fn after_lines(bytes: &[u8]) -> Option<usize> {
     let start = &bytes[..bytes.len().min(LINES_BEFORE)];
     let feeds = (0..start.len()).filter(|&at| start[at] == b'\n');
     feeds.map(|at| at + 1).find(|&at| {
-        // A line of text may also begin with such letters. It counts as a PNM only if two numbers,
-        // the picture's width and height, follow.
+        // A line of text may also begin with the same characters as a PNM. It is taken for a PNM
+        // only if two numbers, the picture's width and height, follow.
         let mut head = PnmReader::new(&start[at..]);
         is_head(&start[at..]) && head.number().is_ok() && head.number().is_ok()
     })
@@ -81,8 +81,8 @@ fn narrowed(bytes: &[u8], is_big: bool) -> Option<Vec<u8>> {
     pairs.iter().map(byte).collect()
 }
 
-/// Reads a PNM, after repairing damage if possible. The picture may be decoded to at most `limit`
-/// bytes.
+/// Reads a PNM, after repairing damage if possible. A picture that would be decoded to more than
+/// `limit` bytes is rejected.
 ///
 /// # Errors
 ///
@@ -334,7 +334,7 @@ struct PnmReader<'b> {
 }
 
 impl<'b> PnmReader<'b> {
-    /// Makes a reader that starts after the two letters at the start of the file, such as `P6`.
+    /// Makes a reader that starts after the two characters at the start of the file, such as `P6`.
     fn new(bytes: &'b [u8]) -> Self {
         Self { bytes, at: 2 }
     }

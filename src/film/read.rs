@@ -3,9 +3,9 @@
 //! In: the bytes of a picture in PNG, OpenEXR, or another format that the crate `image` reads. Out:
 //! pixels in linear light, the precision of the file's numbers, and how the format changes colours.
 //!
-//! Whole numbers are read as sRGB, even if a PNG declares another curve: pictures of a scene are
-//! meant as sRGB, and most programs declare nothing. Floats are read as linear light. Transparent
-//! pixels are mixed with black in linear light.
+//! Whole numbers are read as sRGB, even if a PNG declares another curve: a picture of a scene
+//! should be in sRGB, and most programs declare no curve. Floats are read as linear light.
+//! Transparent pixels are mixed with black in linear light.
 
 use std::{error::Error, io::Cursor};
 
@@ -25,8 +25,8 @@ use super::{
 use crate::color::srgb_to_linear;
 
 /// Maximum number of bytes that the PNG decoder may allocate in addition to the picture. A picture
-/// that needs more is rejected. It is the default of the crate `image`, and far more than usual
-/// files need.
+/// that needs more is rejected. The limit is the default of the crate `image`. Usual files need far
+/// less.
 const UNPACKING: usize = 512 << 20;
 
 /// Returns whether a file begins as a picture does, in any format, even one that is not supported.
@@ -41,8 +41,8 @@ pub fn is_picture_behind_lines(bytes: &[u8]) -> bool {
 
 fn format(bytes: &[u8]) -> Option<ImageFormat> {
     let format = image::guess_format(bytes).ok()?;
-    // A scene's text may begin with a name that starts with the same two letters as a PNM, for
-    // example `P3`. In a PNM, white space or a comment follows the two letters.
+    // A scene's text may begin with a name whose first characters are those of a PNM, for example
+    // `P3`. In a PNM, white space or a comment follows these two characters.
     let is_word = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
     if format == ImageFormat::Pnm && bytes.get(2).is_some_and(is_word) {
         return None;
@@ -218,8 +218,9 @@ fn says_other_curve(info: &png::Info) -> bool {
     }
 }
 
-/// Returns whether the curve of red (or of gray) in an ICC profile is far from sRGB's. The format
-/// is in ICC.1:2010, sections 10.5 and 10.15. Returns `None` if the profile has no such curve.
+/// Returns whether the brightness curve of the red channel (or of gray) in an ICC profile is far
+/// from sRGB's. The format is in ICC.1:2010, sections 10.5 and 10.15. Returns `None` if the profile
+/// has no such curve.
 fn is_other_profile(profile: &[u8]) -> Option<bool> {
     let number = |at: usize| Some(u32::from_be_bytes(*profile.get(at..)?.first_chunk()?));
     let count = number(128)?.min(100) as usize;
@@ -230,15 +231,15 @@ fn is_other_profile(profile: &[u8]) -> Option<bool> {
     let at = number(tag + 4)? as usize;
     let word = |at: usize| Some(u16::from_be_bytes(*profile.get(at..)?.first_chunk()?));
     let fixed = |index: usize| Some(f64::from(number(at + 12 + 4 * index)? as i32) / 65536.0);
-    // Curves are compared by the light at one half. It is 0.2140 in sRGB, and 0.2176 for a power of
-    // 2.2.
+    // Each curve is evaluated only at the encoded value 1/2, and compared with sRGB's linear light
+    // there, 0.2140. A gamma of 2.2 gives 0.2176, which is near enough.
     let light = match (profile.get(at..at + 4)?, number(at + 8)?) {
         (b"curv", 0) => 0.5,
         (b"curv", 1) => libm::pow(0.5, f64::from(word(at + 12)?) / 256.0),
         (b"curv", count) => f64::from(word(at + 12 + 2 * (count as usize / 2))?) / 65535.0,
         (b"para", 0) => libm::pow(0.5, fixed(0)?),
-        // Parametric curves of the types 1 to 4 are (a·x + b)^g at one half, where a, b and g are
-        // their parameters. Two of the types add a constant, which is neglected.
+        // Parametric curves of the types 1 to 4 are (a·x + b)^g at the encoded value x = 1/2, where
+        // a, b and g are their parameters. Types 2 and 4 add a constant, which is neglected.
         (b"para", _) => libm::pow(0.5 * fixed(1)? + fixed(2)?, fixed(0)?),
         _ => return None,
     };
@@ -256,8 +257,9 @@ fn light_of_words() -> Vec<f64> {
     words.map(|word| srgb_to_linear(part(word))).collect()
 }
 
-/// Fills a film from a flat list of numbers: red, green, blue and opacity of each pixel. Mixes them
-/// with black as [`mix`] does.
+/// Fills a film from a flat list of numbers: red, green, blue and opacity of each pixel. Mixes the
+/// colours with black according to the opacity. Returns the opacity, or `None` if all pixels are
+/// opaque.
 fn fill<T: Copy>(
     film: &mut Film,
     samples: &[T],

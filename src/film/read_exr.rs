@@ -24,8 +24,9 @@ use super::{
 };
 use crate::area::Area;
 
-/// Reads a picture that is decoded to at most `limit` bytes. The alpha channel is ignored: OpenEXR
-/// stores colours multiplied by it, i.e. as seen on black.
+/// Reads a picture. Rejects a picture that would be decoded to more than `limit` bytes. The alpha
+/// channel is ignored: OpenEXR stores colours that are already multiplied by alpha, i.e. mixed with
+/// black.
 pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let file = block::read(Cursor::new(bytes), false).map_err(unreadable)?;
     for header in file.headers() {
@@ -90,8 +91,9 @@ pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     })
 }
 
-/// Returns the names of the channels to read: R, G and B, or those of a layer, such as `beauty.R`,
-/// if it is the only one with all three. Fails if there are none.
+/// Returns the names of the channels to read: `R`, `G` and `B`, possibly with the prefix of a
+/// layer, such as `beauty.R`. If several layers have all three channels, the one without a prefix
+/// is chosen. Fails if no layer has them, or if several have them and all have a prefix.
 fn channels(headers: &[Header]) -> Result<[Text; 3], Unreadable> {
     let names = headers.iter().flat_map(|header| &header.channels.list);
     let names: BTreeSet<String> = names.map(|channel| channel.name.to_string()).collect();

@@ -1,18 +1,20 @@
 //! Converts linear light to bytes of sRGB.
 //!
-//! The conversion compares the light with thresholds. There is one between any two neighbouring
-//! bytes k and k + 1: the light whose sRGB value is k + 1/2. The thresholds are exact, so that
-//! every light is converted to the nearest byte. A colour from the scene gets the same bytes as by
-//! [`Color::to_bytes`](crate::color::Color::to_bytes), even halfway between two bytes.
+//! The conversion compares the light with thresholds. Between any two neighbouring bytes, k and
+//! k + 1, there is one threshold: the light whose sRGB value is k + 1/2. The thresholds are exact,
+//! so that every light is converted to the nearest byte. For a colour of the scene, the result is
+//! the same as that of [`Color::to_bytes`](crate::color::Color::to_bytes), even halfway between two
+//! bytes.
 
 use std::array;
 
 use crate::color::half_byte;
 
 /// Number of equal intervals of linear light from 0 to 1. For each interval, the table
-/// [`Encoder::start`] contains the byte from which the conversion starts. With 4096, at most one
-/// threshold lies in an interval, even near black, where they are closest, so that one step finds
-/// the byte. It is a power of two, so that multiplying by it is exact.
+/// [`Encoder::start`] contains the byte with which the conversion starts. With 4096 intervals, each
+/// contains at most one threshold between two bytes, even near black, where thresholds are closest.
+/// The conversion then increases the byte at most once. The number is a power of two, so that
+/// multiplying by it is exact.
 const PARTS: usize = 4096;
 
 /// Converter of linear light to bytes of sRGB.
@@ -21,8 +23,8 @@ pub struct Encoder {
     /// Threshold between each byte k and k + 1: the linear light whose sRGB value is k + 1/2, in
     /// 8-bit steps. From this light on, the byte is k + 1.
     thresholds: [f64; 255],
-    /// Table with the byte of the lower end of each of the equal intervals of linear light. The
-    /// conversion of a light starts from the byte of its interval.
+    /// Table of the bytes with which conversions start. Linear light from 0 to 1 is divided into
+    /// [`PARTS`] equal intervals, and the table contains the byte of each interval's lower end.
     start: [u8; PARTS + 1],
 }
 

@@ -5,12 +5,12 @@ use thiserror::Error;
 
 use super::memory::TooLarge;
 
-/// Maximum number of bytes that a picture is decoded to, unless the caller allows more. A larger
-/// picture is rejected, so that it cannot fill the memory. The limit allows 2^26 pixels of four
-/// bytes; as a film with 24 bytes per pixel, such a picture takes 1.5 GiB.
+/// Maximum length, in bytes, of a decoded picture, unless the caller allows more. A larger picture
+/// is rejected, so that it cannot fill the memory. The limit allows 2^26 pixels of four bytes. A
+/// film of this size has 24 bytes per pixel, i.e. 1.5 GiB.
 pub const DECODED_LIMIT: u64 = 1 << 28;
 
-/// Why a file cannot be read as a picture.
+/// Error: a file cannot be read as a picture.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Unreadable {
@@ -43,7 +43,8 @@ pub enum Unreadable {
         /// Description of the feature.
         cause: String,
     },
-    /// Decompression needs more memory than allowed, in addition to the picture's.
+    /// Decompressing the file needs more memory than the decoder may use in addition to the
+    /// picture.
     #[error("unpacking it takes more than 512 MiB of memory")]
     Unpacking,
     /// The decoded picture would exceed the limit.
@@ -79,8 +80,8 @@ pub(super) fn name(format: ImageFormat) -> String {
     format!("{format:?}").to_uppercase()
 }
 
-/// Rejects a picture that has no pixels or is decoded to more than `limit` bytes. Pixels are
-/// assumed to have four channels of `channel` bytes each.
+/// Rejects a picture that has no pixels or would need more than `limit` bytes when it is decoded.
+/// Pixels are assumed to have four channels of `channel` bytes each.
 pub(super) fn check_size(
     [width, height]: [u64; 2],
     channel: u64,
@@ -101,7 +102,8 @@ pub(super) fn check_size(
     }
 }
 
-/// Shortens a decoder's message to 200 characters. It may repeat a long part of the file.
+/// Shortens a decoder's message to 200 characters, since a message may repeat a long part of the
+/// file.
 fn shortened(cause: &str) -> String {
     const LONGEST: usize = 200;
     let mut characters = cause.trim_end().chars();

@@ -16,9 +16,9 @@ use super::{
 };
 use crate::schema;
 
-/// Maximum difference, in characters, between the widths of aligned parts of lines. At the first
-/// part whose width differs by more, a new column begins. Without a limit, one wide part would move
-/// the values after all short ones far to the right. The language's reference states the number.
+/// Maximum difference, in characters, between the widths of parts that share a column. A part whose
+/// width differs by more starts a new column. Without a limit, one wide part would move everything
+/// after the narrow parts far to the right. The language's reference states the number.
 const MAX_WIDTH_DIFFERENCE: usize = 20;
 
 /// Minimum number of consecutive blocks of one kind, each written on one line, that form a table.
@@ -106,8 +106,8 @@ fn alignment_in_file(entry: &Entry<'_>) -> Alignment {
     }
 }
 
-/// Classifies an entry for the alignment of objects. A line of comments or an object that takes
-/// several lines ends a group, since the objects before and after it are too far apart.
+/// Classifies an entry for the alignment of objects. A line of comments or an object that spans
+/// several lines ends a group: it separates the objects before it from the objects after it.
 fn alignment_of_objects(entry: &Entry<'_>) -> Alignment {
     match alignment_in_file(entry) {
         Alignment::Unaligned => Alignment::End,
@@ -137,7 +137,8 @@ fn is_plain(entry: &Entry<'_>, block: &BlockEntry<'_>) -> bool {
 /// entry.
 fn runs(entries: &[Entry<'_>], class: fn(&Entry<'_>) -> Alignment) -> Vec<Vec<usize>> {
     let mut runs: Vec<Vec<usize>> = Vec::new();
-    // Class of the last run while entries can be added to it, and otherwise `End`.
+    // Class of the entries in the last run. It is set to `End` when no more entries may be added to
+    // this run.
     let mut open = Alignment::End;
     for (index, entry) in entries.iter().enumerate() {
         if entry.blank {
@@ -160,10 +161,10 @@ fn runs(entries: &[Entry<'_>], class: fn(&Entry<'_>) -> Alignment) -> Vec<Vec<us
     runs
 }
 
-/// Splits `list`, a run of entries by their indices, into parts in which the widths differ by at
-/// most [`MAX_WIDTH_DIFFERENCE`], each part as long as possible. `width` returns the width of an
-/// entry. Returns each part with its greatest width. Entries without a width belong to the part
-/// before them.
+/// Splits `list`, which contains the indices of entries, into consecutive parts. Within a part, the
+/// widths of the entries differ by at most [`MAX_WIDTH_DIFFERENCE`]. Each part is as long as
+/// possible and is returned with its greatest width. `width` returns the width of an entry; an
+/// entry without a width belongs to the part before it.
 pub fn shared(list: &[usize], width: impl Fn(usize) -> Option<usize>) -> Vec<(&[usize], usize)> {
     let mut parts = Vec::new();
     let (mut from, mut least, mut most) = (0, usize::MAX, 0);
@@ -235,9 +236,9 @@ fn objects(entries: &mut [Entry<'_>], run: &[usize]) {
     }
 }
 
-/// Aligns the objects `rows`, whose first `field` fields are aligned already, from the field with
-/// the index `field` on. Consecutive objects are aligned if they have the same kind and their
-/// fields of this index have the same name.
+/// Aligns the fields of the objects `rows` from the index `field` on. The fields before this index
+/// are aligned already. Consecutive objects are aligned if they have the same kind and their fields
+/// at this index have the same name.
 fn table(entries: &mut [Entry<'_>], rows: &[usize], field: usize) {
     let alike = |&a: &usize, &b: &usize| {
         let (a, b) = (cell(&entries[a], field), cell(&entries[b], field));
@@ -260,9 +261,9 @@ fn table(entries: &mut [Entry<'_>], rows: &[usize], field: usize) {
     }
 }
 
-/// Returns an object's kind, and the name and the width, in characters, of its field with the index
-/// `field`. Returns `None` if the object has no field after this one, since nothing then has to be
-/// aligned.
+/// Describes the field of an object at the index `field`. Returns the object's kind, the field's
+/// name and the field's width in characters. Returns `None` if the object has no further field,
+/// because only the start of a further field would be aligned.
 fn cell<'a>(entry: &'a Entry<'_>, field: usize) -> Option<(&'a str, &'a str, usize)> {
     let block = block(entry)?;
     block.entries.get(field + 1)?;

@@ -15,7 +15,8 @@ use crate::{
 pub struct Entry<'s> {
     /// Whether a blank line precedes the entry.
     pub blank: bool,
-    /// The comments before the entry on its line; all comments if the entry consists of comments.
+    /// The comments that stand before the entry on its line. If the entry is a line of comments,
+    /// all of its comments.
     pub leading: Vec<&'s str>,
     /// The kind of the entry, with its parts.
     pub what: EntryKind<'s>,
@@ -73,8 +74,7 @@ impl BlockEntry<'_> {
 }
 
 impl Entry<'_> {
-    /// Returns the width, in characters, that an entry takes in the line of a block that is laid
-    /// out on one line.
+    /// Returns the width of the entry, in characters, if its block is laid out on one line.
     pub fn width_in_line(&self) -> usize {
         let comments = self.leading.iter().chain(&self.trailing);
         let comments: usize = comments.map(|comment| comment.chars().count() + 1).sum();
@@ -86,7 +86,7 @@ impl Entry<'_> {
 }
 
 /// Returns the entries of a file. If `items` owns its elements, each item is dropped as soon as its
-/// entry is made, because trees take much memory.
+/// entry is made, because a tree needs much memory.
 pub fn of_file<'s, 't>(
     source: &'s Source,
     comments: &[Span],
@@ -107,8 +107,8 @@ enum Container {
 
 impl<'s> TokenReader<'_, 's> {
     /// Returns the entries of `nodes`, i.e. of a file's items or a block's fields, and of the
-    /// comments between them. They end before the offset `end`. Also returns the comments after a
-    /// block's `{` on its line.
+    /// comments between the nodes and after them up to the offset `end`. The second list contains
+    /// the comments that stand after a block's `{` on the same line.
     fn entries<N>(
         &mut self,
         nodes: impl IntoIterator<Item = impl Borrow<N>>,
@@ -197,8 +197,8 @@ impl<'s> TokenReader<'_, 's> {
             Self::field,
         );
         self.skip(close);
-        // Two blanks follow each field; after the last field, they stand for ` }`, which is as
-        // wide. The other 3 characters are ` { `.
+        // The width includes ` { `, which has three characters, and two characters after each
+        // field: two blanks that separate it from the next field, or ` }` after the last field.
         let fields: usize = entries.iter().map(|entry| entry.width_in_line() + 2).sum();
         let is_empty = entries.is_empty() && after_open.is_empty();
         let width = width(&head) + 3 + fields;
@@ -255,8 +255,8 @@ fn comments<'s>(
             last.trailing.extend(texts.map(|comment| comment.text));
             joined
         }
-        // If an entry follows a `{` on the same line, the comments between them belong to the start
-        // of that entry.
+        // Comments after a `{` belong to the `{` if a line end follows them. Otherwise, an entry
+        // follows on the same line, and the comments belong to this entry.
         (None, Container::Block) if joined < gap.comments.len() || gap.breaks > 0 => {
             let texts = gap.comments.iter().take(joined);
             after_open.extend(texts.map(|comment| comment.text));

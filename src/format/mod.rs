@@ -115,8 +115,8 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
         ..
     } = scene::analyze(&sources);
     let of_syntax = diagnostics.iter().filter(|it| it.is_of_syntax);
-    // For an unknown field or kind, `check` reports only that it is unknown, not that its value is
-    // missing.
+    // `check` does not report that an unknown field or kind has no value, only that it is unknown.
+    // If there are no other mistakes, these reports are therefore returned.
     let codes = ["pinhole::unknown_field", "pinhole::unknown_kind"];
     let is_unknown = |it: &&Diagnostic| codes.contains(&it.code.as_str());
     let unknown = diagnostics.iter().filter(is_unknown);

@@ -185,7 +185,8 @@ impl<'a, 's> TokenReader<'a, 's> {
             ValueKind::Chain { first, rest } => {
                 self.value(first, before, depth, words);
                 for step in rest {
-                    // Products get a higher number than sums, so lines are broken at sums first.
+                    // The number of the operator's `Fold` is greater in a product than in a sum.
+                    // Lines are broken at the lowest number, so sums are broken first.
                     let tightness = 2 * depth + usize::from(step.operator.is_of_product());
                     self.token(step.sign, Before::Fold(tightness), words);
                     self.value(&step.operand, Before::Space, depth, words);
@@ -222,8 +223,8 @@ impl<'a, 's> TokenReader<'a, 's> {
 /// alignment and without the comments at the line's end.
 pub const WIDTH: usize = 100;
 
-/// Returns the width, in characters, of the tokens and comments `words` on one line. If a comment
-/// has several lines, only its last line counts.
+/// Returns the width, in characters, of the tokens and comments `words` on one line. If one of them
+/// is a comment of several lines, the width is that of the last line.
 pub fn width(words: &[Word<'_>]) -> usize {
     words.iter().fold(0, |width, word| {
         let blank = usize::from(word.before != Before::Nothing);
@@ -239,7 +240,8 @@ pub fn column_after(column: usize, text: &str) -> usize {
     }
 }
 
-/// Returns whether the tokens and comments `words` take more than one line.
+/// Returns whether the tokens and comments `words` need several lines: one of them contains a line
+/// end or must start a new line.
 pub fn has_line_end(words: &[Word<'_>]) -> bool {
     let ends = |word: &Word<'_>| word.before == Before::Line || word.text.contains('\n');
     words.iter().any(ends)

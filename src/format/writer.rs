@@ -104,7 +104,8 @@ impl LayoutWriter {
         push_flat(line, last);
     }
 
-    /// Writes all lines that `words` take except the last one. Returns the words of the last line.
+    /// Writes `words` over as many lines as they need, except the last line. Returns the words of
+    /// the last line.
     fn lines<'w, 's>(
         &mut self,
         line: &mut String,
@@ -130,7 +131,8 @@ impl LayoutWriter {
         let (words, behind) = words.split_at(words.len() - behind);
         let behind: Vec<&str> = behind.iter().map(|word| word.text).collect();
         push_flat(&mut line, words);
-        // If the line itself consists of a comment, the comments after it stay beside it.
+        // A line that consists only of comments gets no column of comments: the further comments
+        // follow the first one after a blank.
         if words.len() == 1 && words.iter().all(|word| is_comment(word.text)) {
             for comment in &behind {
                 line.push(' ');

@@ -1,5 +1,6 @@
-//! Turns the result of a search into a verdict on the picture. Mistakes that explain the picture
-//! are named; others become guesses.
+//! Computes the verdict on a picture from the best hypothesis about the program that made it. The
+//! hypothesis's mistakes are named if they explain the picture. Otherwise they are reported as
+//! guesses.
 
 use super::{
     hypotheses::{Candidate, Mistake, Shows, mistakes, parameters},
@@ -15,23 +16,34 @@ use crate::{
     scene::Scene,
 };
 
-/// Least fraction of the squared difference between the picture and the exact one that a mistake
-/// must explain to be reported beside others. A larger value would hide small mistakes. A smaller
-/// one would report mistakes that explain almost nothing.
+/// Threshold below which a mistake is not reported: the fraction of the picture's squared error
+/// that the mistake explains. A larger value would hide small mistakes. A smaller one would report
+/// mistakes that explain almost nothing.
 const NOTHING: f64 = 1e-5;
+
+/// Number of fields of one object with wrong numbers from which on they are not believed. Few
+/// students mistype two fields of an object, and hardly any three.
+const MADE_UP: usize = 3;
+
+/// Identifier of the mistake that the rays are parallel. Such a program has no distance of the view
+/// plane and no angle, so a wrong number for one of them only means another size of the window.
+const PARALLEL: &str = "parallel_rays";
+const PARALLEL_OF_OWN_SIZE: &str =
+    "the rays are parallel: they leave along −w, from a window whose size is not the scene's";
 
 /// Returns the verdict, given what the search found: the best hypothesis about the program that
 /// made the picture, and whether it explains the picture.
 pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Verdict {
     let (scene, jpeg) = (judge.scene, judge.fine.jpeg);
     let right = Candidate::correct(scene);
-    // Must be read before the verdict is computed, because that spends work, too. A search that
-    // explained the picture ended for this reason, so it was not cut short.
+    // `is_cut` is read before the verdict is computed, because this computation spends work, too,
+    // and may use up the budget. A search that explained the picture is complete, so it was not cut
+    // short.
     let is_explained = matches!(found, Some((_, true)));
     let is_cut = judge.work.is_cut() && !is_explained;
     let mut verdict = match found {
         Some((found, is_explained)) if !found.candidate().mistakes.is_empty() => {
-            wrong(judge, &found, is_explained, is_cut)
+            wrong(judge, &found, is_explained)
         }
         Some((_, true)) if !has_other_colors(film, scene, jpeg) => {
             let judged = judge.judged(&right, &judge.fine);
@@ -45,12 +57,11 @@ pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Ve
             Verdict {
                 objects,
                 is_background_right,
-                is_cut,
                 ..Verdict::without_mistakes(Kind::Unknown, scene)
             }
         }
     };
-    verdict.is_coded = jpeg.is_some();
+    (verdict.is_coded, verdict.is_cut) = (jpeg.is_some(), is_cut);
     verdict
 }
 
@@ -76,11 +87,11 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
 
 /// Returns the verdict for a hypothesis with mistakes. The mistakes are named if together they
 /// explain the picture; otherwise they are reported as guesses.
-fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Verdict {
+fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     let (scene, last) = (judge.scene, found.candidate());
-    // Programs with some of the mistakes are compared with the picture on one grid. The noise that
-    // is left with all mistakes is subtracted. A shift of samples and a wrong pixel width are
-    // visible only at full resolution.
+    // The medium resolution is enough to measure how much each mistake explains. Shifted samples
+    // and a wrong pixel width are visible only at full resolution, so the central crop is used for
+    // them.
     let level = if last.behaviour.is_shifted() || last.is_filtered() {
         judge.central_crop()
     } else {
@@ -98,12 +109,18 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
     let all = beyond(&before).max(1e-12);
     let mut left = all;
     let mut mistakes = Vec::new();
-    // The mistake that leaves the least difference comes first. Other mistakes may explain more
-    // once this one is accounted for, because it no longer hides them.
-    let mut others: Vec<&Mistake> = last.mistakes.iter().collect();
+    let is_size = |mistake: &&Mistake| mistake.is_size() && last.has_parallel_rays();
+    let (sizes, mut others): (Vec<&Mistake>, Vec<_>) = last.mistakes.iter().partition(is_size);
+    // Adds the mistakes to a correct program one by one, each time the one that leaves the least
+    // difference from the picture. A mistake may explain more once others are added, because they
+    // no longer hide it.
     while !others.is_empty() {
         let with = |(at, mistake): (usize, &&Mistake)| {
-            let after = before.with((*mistake).clone())?;
+            let mut after = before.with((*mistake).clone())?;
+            if after.has_parallel_rays() && !before.has_parallel_rays() {
+                let mut sizes = sizes.iter();
+                after = sizes.try_fold(after, |after, &size| after.with(size.clone()))?;
+            }
             Some((beyond(&after), at, after))
         };
         let with = others.iter().enumerate().filter_map(with);
@@ -111,8 +128,13 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
             break;
         };
         let mistake = others.remove(at);
-        let set = parameters::arguments(&before.scene, &after.scene);
+        let has_own_size = mistake.id() == PARALLEL && !sizes.is_empty();
+        let mut set = parameters::arguments(&before.scene, &after.scene);
         let mut message = mistake.message(scene);
+        if has_own_size {
+            set.clear();
+            message = PARALLEL_OF_OWN_SIZE.to_owned();
+        }
         if let (Mistake::Row(..), [_]) = (mistake, &set[..])
             && let [changed] = &parameters::changed(&before.scene, &after.scene)[..]
             && let Some(should) = changed.value(&before.scene)
@@ -120,13 +142,15 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
         {
             message = format!("{message}: {is} instead of {should}");
         }
-        let equivalent = is_explained.then(|| equivalent_rows(judge, last, mistake));
+        let equivalent =
+            (is_explained && !has_own_size).then(|| equivalent_rows(judge, last, mistake));
         for other in equivalent.iter().flatten() {
             let other = other.message(scene);
             message = format!("{message}; or, in a picture like this, {other}");
         }
         mistakes.push(NamedMistake {
             id: mistake.id(),
+            object: mistake.object(),
             message: message.replace("{gain}", &gain),
             help: mistake.help(scene),
             set,
@@ -145,13 +169,13 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
     if !is_explained || mistakes.iter().any(explains) {
         mistakes.retain(explains);
     }
-    let is_named = !is_cut && !mistakes.is_empty() && is_explained;
+    let is_named = !mistakes.is_empty() && is_explained && !is_made_up(last);
     let (kind, mistakes, guesses) = if is_named {
         (Kind::Wrong, mistakes, Vec::new())
     } else {
         (Kind::Unknown, Vec::new(), mistakes)
     };
-    // Guesses do not explain the picture, so objects are compared with those of the correct scene.
+    // Guesses do not explain the picture, so the objects are then judged by the correct scene.
     let known = if is_named { last } else { &correct };
     let (objects, is_background_right) = objects::judged(judge, known);
     Verdict {
@@ -161,21 +185,31 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
         guesses,
         objects,
         is_background_right,
-        is_cut,
         ..Verdict::without_mistakes(kind, scene)
     }
 }
 
-/// Returns other rows of the table of mistakes that explain the picture as well as `mistake` does,
-/// if they replace it. They describe a similar mistake. The picture alone cannot decide between
-/// them.
+/// Returns whether the hypothesis has wrong numbers in so many fields of one object that they more
+/// likely imitate a wrong formula for this object.
+fn is_made_up(candidate: &Candidate) -> bool {
+    let mistakes = candidate.mistakes.iter();
+    let numbers = mistakes.filter(|mistake| matches!(mistake, Mistake::Numbers(..)));
+    let objects: Vec<usize> = numbers.filter_map(Mistake::object).collect();
+    let count = |object: &usize| objects.iter().filter(|other| *other == object).count();
+    objects.iter().any(|object| count(object) >= MADE_UP)
+}
+
+/// Returns the variants of a mistake that explain the picture, too. The picture alone cannot tell
+/// which of them the program makes. Only variants that are visible inside areas of one colour are
+/// tried.
 fn equivalent_rows(judge: &Judge, candidate: &Candidate, mistake: &Mistake) -> Vec<Mistake> {
     let Mistake::Row(row, object) = mistake else {
         return Vec::new();
     };
     let rows = mistakes::ROWS.iter().chain(mistakes::OBJECT_ROWS);
-    // In a JPEG, a program that multiplies light cannot be told from one that multiplies bytes. So
-    // both rows are tried, although their identifiers differ.
+    // A program that multiplies light by a factor and a program that multiplies bytes by a factor
+    // can make almost the same JPEG. So each of these two mistakes is tried as a variant of the
+    // other, although their identifiers differ.
     let [gain, of_bytes] = ["not_divided", "bytes_scaled"];
     let is_alike = |id: &str| {
         id == row.id || [gain, of_bytes].contains(&id) && [gain, of_bytes].contains(&row.id)

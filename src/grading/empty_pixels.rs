@@ -13,14 +13,14 @@ use super::{
 };
 use crate::film::Film;
 
-/// Replaces the pixels that have no sample by NaN. Returns `None` if there are none. `empty` is the
-/// colour that such a pixel shows.
+/// Replaces pixels without a sample by NaN. `empty` is the colour that a program writes into such a
+/// pixel. Returns `None` if no pixel lacks a sample.
 ///
-/// A pixel is suspected if it shows this colour and should show another one. The suspects count as
-/// pixels without a sample under two conditions. First, they are neighbours of each other no more
-/// often than independent pixels would be. Second, there are no more of them than the noise of the
-/// other pixels predicts: with n samples per pixel on average, a fraction e⁻ⁿ of the pixels has
-/// none.
+/// A pixel is suspected if it has the colour `empty` and the exact picture has another colour
+/// there. The suspicion is dropped in two cases. First, if more of the suspects are neighbours than
+/// chance explains. Second, if there are more suspects than expected: with n samples per pixel on
+/// average, a fraction e⁻ⁿ of the pixels has none. Here n is estimated from the noise of the other
+/// pixels.
 pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Option<Film> {
     let width = film.width() as usize;
     let is_empty = |at: usize| is_near(film.pixels()[at], empty);
@@ -49,9 +49,9 @@ pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Op
         }
     }
     let both = share * share;
-    // Two pairs of neighbours that share a pixel are not independent. Each pair shares a pixel with
-    // six others. `more` is the variance of the number of empty pairs, divided by the variance that
-    // it would have if pairs were independent.
+    // Pairs of neighbours that share a pixel are not independent, and each pair shares a pixel with
+    // six others. So the number of empty pairs varies more than a Poisson variable. The quotient of
+    // its variance and its mean is `more`, so both numbers are divided by `more`.
     let more = 1.0 - both + 6.0 * share * (1.0 - share);
     if !is_chance(empty_pairs / more, pairs * both / more) {
         return None;
@@ -64,9 +64,9 @@ pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Op
     }
     let seen: Vec<DVec3> = without.pixels().iter().copied().map(DVec3::from).collect();
     let prediction = Prediction::new(&seen, width, Arc::clone(moments), Curve::Correct);
-    // The noise gives the harmonic mean of the sample counts of all pixels with samples. It is less
-    // than n + 1, where n is the mean sample count of all pixels. So the expected fraction of empty
-    // pixels, e⁻ⁿ, is less than e^(1 − `samples`).
+    // `samples` is estimated from the noise, so it is a harmonic mean: that of the sample counts of
+    // all pixels with samples. It is less than n + 1, where n is the mean sample count of all
+    // pixels. So the expected fraction of empty pixels, e⁻ⁿ, is less than e^(1 − `samples`).
     let samples = prediction.score().samples?;
     let expected = count * libm::exp(1.0 - samples);
     is_chance(found, expected).then_some(without)

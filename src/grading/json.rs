@@ -59,19 +59,17 @@ impl Verdict {
             json!({ "index": object.index, "name": object.name, "right": object.is_right, "off": object.off })
         });
         let fields = [
-            ("verdict", json!(self.kind.word())),
-            ("line", json!(self.line())),
-            ("samples_per_pixel", json!(self.samples)),
-            ("mistakes", json_of(&self.mistakes)),
-            ("guesses", json_of(&self.guesses)),
-            ("objects", objects.collect()),
+            ("verdict", Some(json!(self.kind.word()))),
+            ("line", Some(json!(self.line()))),
+            ("samples_per_pixel", Some(json!(self.samples))),
+            ("mistakes", Some(json_of(&self.mistakes))),
+            ("guesses", Some(json_of(&self.guesses))),
+            ("objects", Some(objects.collect())),
+            ("rest", self.rest.map(Value::from)),
+            ("limited", Some(json!(self.is_cut))),
         ];
-        let rest = self.rest.map(|rest| ("rest", json!(rest)));
-        let fields = fields.into_iter().chain(rest);
-        fields
-            .chain([("limited", json!(self.is_cut))])
-            .map(|(name, value)| (name.to_owned(), value))
-            .collect()
+        let present = |(name, value): (&str, Option<Value>)| Some((name.to_owned(), value?));
+        fields.into_iter().filter_map(present).collect()
     }
 }
 

@@ -34,7 +34,6 @@ pub use self::json::figures;
 use self::{
     empty_pixels::without_empty,
     hypotheses::{Candidate, Curve, mistakes},
-    plain_facts::EmptyRows,
     scoring::{Moments, Rendering, Work, moments, work},
     search::{
         Judge,
@@ -58,8 +57,8 @@ use crate::{
     tracer::World,
 };
 
-/// The exact picture of a part of a scene, and what else is needed to judge pictures of that part.
-/// It is computed once for a whole class.
+/// The exact picture of a part of a scene, for judging pictures of that part. It is computed once,
+/// even if the pictures of a whole class of students are judged.
 pub struct Reference {
     /// The exact picture.
     pub exact: Exact,
@@ -75,9 +74,10 @@ pub struct Reference {
     effort: f64,
 }
 
-/// Number of bytes of memory per pixel: those of seven colours, each of three numbers. One colour
-/// is the exact mean. The other six are two copies of three colours: a mean, its variance, and the
-/// variance of a sample. Both copies exist while they are computed.
+/// Number of bytes of memory per pixel. It is enough for seven colours, each of three numbers. One
+/// colour is the exact mean. The other six are two copies of a mean, the mean's variance, and the
+/// variance of a sample. Two copies exist for a short time, while the moments of the picture are
+/// collected.
 const BYTES_A_PIXEL: u64 = 7 * size_of::<[f64; 3]>() as u64;
 
 impl fmt::Debug for Reference {
@@ -143,7 +143,8 @@ impl Reference {
         self.part == part && self.rounding == rounding
     }
 
-    /// Compares a picture with the exact one.
+    /// Compares a picture with the exact one. A pixel may differ by `steps` 8-bit steps, in
+    /// addition to the error bound of the exact picture.
     ///
     /// # Errors
     ///
@@ -187,7 +188,8 @@ impl Reference {
             return self.judge_opaque(&picture.film, jpeg, cancel);
         };
         // First, a transparent picture is judged as it appears on black. If it is wrong there, or
-        // if no pixel is opaque, its colours are judged without alpha.
+        // if no pixel is opaque, its colours are judged without alpha. An exception is a picture
+        // whose alpha is 0 everywhere, because nothing of it is visible.
         let verdict = self.judge_opaque(&picture.film, jpeg, cancel)?;
         let is_right = matches!(verdict.kind, Kind::Right | Kind::Noise);
         if is_right && opacity.range[1] == 1.0 {
@@ -223,16 +225,15 @@ impl Reference {
             }
             return Ok(verdict);
         }
-        let Some(empty) = EmptyRows::of(film, exact) else {
-            return self.judge_full(film, jpeg, MAX_MISTAKES, cancel);
-        };
         // If rows have one colour, either the program never wrote them, or its camera looks
         // elsewhere. They count as never written if the rest of the picture is right.
-        let rest = self.judge_full(&empty.removed_from(film), jpeg, 0, cancel)?;
-        match rest.kind {
-            Kind::Right | Kind::Noise => Ok(rest.with_fact(empty.fact())),
-            Kind::Wrong | Kind::Unknown => self.judge_full(film, jpeg, MAX_MISTAKES, cancel),
+        if let Some((rest, fact)) = plain_facts::without_empty_rows(film, exact) {
+            let rest = self.judge_full(&rest, jpeg, 0, cancel)?;
+            if matches!(rest.kind, Kind::Right | Kind::Noise) {
+                return Ok(rest.with_fact(fact));
+            }
         }
+        self.judge_full(film, jpeg, MAX_MISTAKES, cancel)
     }
 
     /// Judges a picture by a search for its mistakes: at most `most`, and in addition some that are
@@ -253,7 +254,7 @@ impl Reference {
         let work = Work::new(self.part.pixels(), self.work, self.effort, cancel);
         let judge = Judge::new(&self.scene, &self.correct, &film, jpeg, work);
         let found = forward_selection::run(&judge, most)?;
-        // The verdict must be computed completely, so the budget of work does not limit this.
+        // The verdict must be computed completely, so it is not limited by the budget of work.
         let conclude = || conclusion::conclude(&judge, &film, found);
         let verdict = judge.work.without_limit(conclude);
         Ok(cancel::unless_set(cancel, verdict)?)

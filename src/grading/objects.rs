@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use super::{
     hypotheses::{Candidate, Layout, Owner},
     scoring::Strays,
-    search::{Judge, labels},
+    search::Judge,
 };
 use crate::{
     projection::Projection,
@@ -60,23 +60,21 @@ pub fn judged(judge: &Judge, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool
     let mut objects = right(scene);
     for (index, one) in objects.iter_mut().enumerate() {
         let shapes = [scene, &candidate.scene].map(|scene| &scene.objects[index].shape);
-        one.off = if is_drawn[index] {
-            off(scene, &candidate.scene, index)
-        } else {
-            0.0
-        };
+        if is_drawn[index] {
+            one.off = off(scene, &candidate.scene, index);
+        }
         one.is_right = is_drawn[index] && shapes[0] == shapes[1] && one.off < HALF_PIXEL;
     }
     let right = judge.predicted(&candidate.drawn_correctly(), &judge.fine);
     let strays = right.map_or_else(Strays::default, |right| right.strays());
     let grid = &judge.fine.grid;
-    let labels = labels(judge, candidate, Layout::default(), grid);
+    let labels = judge.labels(candidate, Layout::default(), grid);
     let is_moved: Vec<bool> = objects.iter().map(|one| !one.is_right).collect();
     let is_of_another = |at: usize| {
         let mut near = grid.around(at, BESIDE).filter_map(|near| labels[near]);
         near.any(|object| is_moved[object])
     };
-    // The background counts as an object behind all others.
+    // The background is treated as one more object, whose index follows those of all others.
     let group =
         |at: usize| (!is_of_another(at)).then_some(labels[at].unwrap_or(scene.objects.len()));
     let are_right = strays.are_empty(scene.objects.len() + 1, group);
@@ -109,8 +107,8 @@ fn off(from: &Scene, to: &Scene, object: usize) -> f64 {
     moved.fold(0.0, f64::max)
 }
 
-/// Returns some points of a shape, which move with it. For a checkerboard, these are `squares`,
-/// which are given in units of a square's side.
+/// Returns some points of a shape. They move if the shape moves. For a checkerboard, they are the
+/// points `squares`, whose coordinates are in units of a square's side.
 fn points(shape: &Shape, squares: &[DVec3]) -> Vec<DVec3> {
     match shape {
         Shape::Sphere(sphere) => {

@@ -16,27 +16,27 @@ use crate::{area::Area, film::Film, scene::Scene};
 /// chance.
 const NOISE_RATIO: f64 = 0.8;
 
-/// Number of cells along the picture's longer side, when causes of an empty picture are tried. One
-/// ray per cell looks for objects. With fewer cells, more small objects are missed; with more, the
-/// search takes longer.
+/// Number of cells along the picture's longer side, in a search for causes of an empty picture. It
+/// tests with one ray per cell whether a faulty program sees an object. With fewer cells, more
+/// small objects are missed; with more, the search takes longer.
 const CELLS: u32 = 32;
 
 /// Maximum number of possible causes that are listed for an empty picture. Chosen to keep the
 /// advice short.
 const CAUSES: usize = 3;
 
-fn fact(id: &'static str, message: String, help: String) -> NamedMistake {
+fn fact(id: &'static str, message: impl Into<String>, help: impl Into<String>) -> NamedMistake {
     NamedMistake {
         id,
-        message,
-        help,
+        object: None,
+        message: message.into(),
+        help: help.into(),
         set: Vec::new(),
         explains: 1.0,
     }
 }
 
-/// Returns the fact that some values of a picture are not finite numbers. Returns `None` if all are
-/// finite.
+/// Reports how many pixels of a picture are not finite numbers. Returns `None` if all are finite.
 pub fn not_finite(film: &Film) -> Option<NamedMistake> {
     let is_finite = |pixel: &&[f64; 3]| pixel.iter().all(|light| light.is_finite());
     let count = film.pixels().len() - film.pixels().iter().filter(is_finite).count();
@@ -46,11 +46,11 @@ pub fn not_finite(film: &Film) -> Option<NamedMistake> {
         count => format!("{count} pixels are no finite numbers"),
     };
     let help = "a division by zero, or the square root of a negative number, makes them";
-    Some(fact("not_finite", message, help.to_owned()))
+    Some(fact("not_finite", message, help))
 }
 
-/// Returns the fact that a picture has one colour or is noise. Returns `None` if neither is the
-/// case. `exact` is the correct picture.
+/// Finds out whether a picture has one colour or is noise although the exact picture is not.
+/// Returns this fact as a mistake, or `None` if neither is the case.
 pub fn empty_or_noise(film: &Film, exact: &Film, scene: &Scene) -> Option<NamedMistake> {
     let first = film.pixels()[0];
     if film.pixels().iter().all(|pixel| *pixel == first) {
@@ -67,17 +67,19 @@ pub fn empty_or_noise(film: &Film, exact: &Film, scene: &Scene) -> Option<NamedM
         }
         if first == [0.0; 3] {
             let help = "nothing was written into it, or zeros: a colour from 0 to 1 as a whole number is 0, and is multiplied by 255 before it becomes one";
-            let message = "the picture is black all over".to_owned();
-            return Some(fact("black", message, help.to_owned()));
+            return Some(fact("black", "the picture is black all over", help));
         }
         let help = "a ray leaves through its own pixel: its direction has to be made anew for each";
-        let message = "the picture has one colour all over".to_owned();
-        return Some(fact("one_colour", message, help.to_owned()));
+        return Some(fact(
+            "one_colour",
+            "the picture has one colour all over",
+            help,
+        ));
     }
     (is_noise(film) && !is_noise(exact)).then(|| {
         let message = "the picture is noise: it is no more like this scene than noise is";
         let help = "look at the file: a header with another size or another number of bytes in a pixel, or memory that was never written";
-        fact("noise", message.to_owned(), help.to_owned())
+        fact("noise", message, help)
     })
 }
 
@@ -119,63 +121,40 @@ fn causes(scene: &Scene) -> String {
     }
 }
 
-/// Rows of pixels at the top or bottom of a picture that have one colour but should not. There are
-/// at least two of them, and they never fill the picture.
-#[derive(Clone, Copy, Debug)]
-pub struct EmptyRows {
-    /// Indices of the first and the last of the empty rows.
-    rows: [usize; 2],
-}
-
-impl EmptyRows {
-    /// Finds the rows at the top or bottom of a picture that have one colour but should not, by
-    /// comparing it with the exact picture. Returns `None` if there are none.
-    pub fn of(film: &Film, exact: &Film) -> Option<Self> {
-        let width = film.width() as usize;
-        let height = film.pixels().len() / width;
-        let row = |film: &'_ Film, y: usize| film.pixels()[y * width..][..width].to_vec();
-        let from_below = |is_below: bool| {
-            let at = |y: usize| if is_below { height - 1 - y } else { y };
-            let light = film.pixels()[at(0) * width];
-            let are_empty = |y: &usize| row(film, at(*y)).iter().all(|pixel| *pixel == light);
-            let count = (0..height).take_while(are_empty).count();
-            // A sky has one colour in any picture, even if this colour is wrong. So a row of the
-            // sky counts as empty only if its correct colour appears elsewhere in the picture.
-            let is_shown = |light| film.pixels().iter().any(|pixel| is_near(*pixel, light));
-            let is_wrong = |y: &usize| {
-                let own = row(exact, at(*y));
-                let has_several = own.iter().any(|pixel| !is_near(*pixel, own[0]));
-                let wrong = own.iter().filter(|pixel| !is_near(**pixel, light));
-                wrong.count() > width / 8 && (has_several || is_shown(own[0]))
-            };
-            let wrong_rows = (0..count).filter(is_wrong).count();
-            let ends = [at(0), at(count.max(1) - 1)];
-            let rows = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-            (wrong_rows >= 2 && count + 2 <= height).then_some(Self { rows })
+/// Finds rows at the top or bottom of a picture that have one colour, although they look different
+/// in the exact picture. Ignores a single such row, and rows that fill the picture. Returns the
+/// picture with these rows replaced by NaN, and a message. Returns `None` if no rows are found.
+pub fn without_empty_rows(film: &Film, exact: &Film) -> Option<(Film, NamedMistake)> {
+    let (width, height) = (film.width() as usize, film.height());
+    let rows = |is_below: bool| {
+        let at = |y: u32| if is_below { height - 1 - y } else { y };
+        let light = film.row(at(0))[0];
+        let is_empty = |y: &u32| film.row(at(*y)).iter().all(|pixel| *pixel == light);
+        let count = (0..height).take_while(is_empty).count() as u32;
+        // A sky has one colour in any picture, even if this colour is wrong. So a row of the
+        // sky counts as empty only if its correct colour appears elsewhere in the picture.
+        let is_shown = |light| film.pixels().iter().any(|pixel| is_near(*pixel, light));
+        let is_wrong = |y: &u32| {
+            let own = exact.row(at(*y));
+            let has_several = own.iter().any(|pixel| !is_near(*pixel, own[0]));
+            let wrong = own.iter().filter(|pixel| !is_near(**pixel, light));
+            wrong.count() > width / 8 && (has_several || is_shown(own[0]))
         };
-        from_below(true).or_else(|| from_below(false))
-    }
-
-    /// Returns the picture with NaN in place of the empty rows.
-    pub fn removed_from(&self, film: &Film) -> Film {
-        let width = film.width() as usize;
-        let mut left = film.clone();
-        let [first, last] = self.rows;
-        left.pixels_mut()[first * width..(last + 1) * width].fill([f64::NAN; 3]);
-        left
-    }
-
-    /// Returns the fact that the picture has empty rows, for the verdict.
-    pub fn fact(&self) -> NamedMistake {
-        let [first, last] = self.rows;
-        let help = "a picture is written when all of its rows are made, and each index, row · width + column, is used once";
-        let message = format!("rows {first} to {last} are empty: they have one colour");
-        fact("rows_missing", message, help.to_owned())
-    }
+        let [one, other] = [at(0), at(count.max(1) - 1)];
+        let is_found = (0..count).filter(is_wrong).count() >= 2 && count + 2 <= height;
+        is_found.then_some([one.min(other), one.max(other)])
+    };
+    let [first, last] = rows(true).or_else(|| rows(false))?;
+    let mut left = film.clone();
+    left.pixels_mut()[first as usize * width..][..(last - first + 1) as usize * width]
+        .fill([f64::NAN; 3]);
+    let help = "a picture is written when all of its rows are made, and each index, row · width + column, is used once";
+    let message = format!("rows {first} to {last} are empty: they have one colour");
+    Some((left, fact("rows_missing", message, help)))
 }
 
-/// Returns the fact that a picture is not opaque, given its least and its greatest alpha, from 0 to
-/// 1.
+/// Reports that a picture is not opaque. `least` and `most` are its least and its greatest alpha,
+/// from 0 to 1.
 pub fn transparent([least, most]: [f64; 2]) -> NamedMistake {
     let help = "alpha is 255 in every pixel of an opaque picture, or the file has no alpha";
     let byte = |part: f64| (255.0 * part).round();
@@ -187,5 +166,5 @@ pub fn transparent([least, most]: [f64; 2]) -> NamedMistake {
             format!("not opaque: its alpha is {one} to {two} of 255"),
         ),
     };
-    fact(id, format!("the picture is {is}"), help.to_owned())
+    fact(id, format!("the picture is {is}"), help)
 }

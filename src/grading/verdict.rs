@@ -37,6 +37,8 @@ impl Kind {
 pub struct NamedMistake {
     /// Stable identifier, for programs.
     pub id: &'static str,
+    /// Index of the object that the mistake is about. `None` if it is about no single object.
+    pub object: Option<usize>,
     /// Message that says what is wrong.
     pub message: String,
     /// Advice on how to correct the mistake.
@@ -44,7 +46,7 @@ pub struct NamedMistake {
     /// `--set` arguments that make the scene reproduce the mistake.
     pub set: Vec<String>,
     /// Fraction of the squared difference between the picture and the exact one that the mistake
-    /// explains. The part of the difference that is noise does not count.
+    /// explains. Noise is subtracted from the difference first.
     pub explains: f64,
 }
 
@@ -62,8 +64,8 @@ pub struct Verdict {
     /// The mistakes that come nearest to the picture, if no known mistakes explain it.
     pub guesses: Vec<NamedMistake>,
     /// Fraction of the squared difference between the picture and the exact one that the mistakes
-    /// or guesses do not explain. The part of the difference that is noise does not count. `None`
-    /// if only noise is left.
+    /// or guesses do not explain. Differences that noise can explain are ignored. `None` if only
+    /// noise is left, or if there are no mistakes or guesses.
     pub rest: Option<f64>,
     /// The verdict on each object.
     pub objects: Vec<ObjectVerdict>,

@@ -43,7 +43,7 @@ impl Inspection {
         writeln!(out, "}}")
     }
 
-    /// Returns the members of the JSON object that are not about single objects of the scene.
+    /// Returns the members of the JSON object, except the list of the scene's objects.
     fn facts(&self) -> [(&'static str, Value); 4] {
         let camera = &self.camera;
         let point = |(axis, pixel)| json!({ "axis": axis, "pixel": pixel });

@@ -29,7 +29,7 @@ pub enum Error {
     Read {
         /// Path of the file.
         path: PathBuf,
-        /// Reason why it cannot be written.
+        /// Reason why the file cannot be read.
         error: io::Error,
     },
     /// A file cannot be written.

@@ -20,7 +20,7 @@ use crate::{
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// The pixels, and how a file of them is coded.
+    /// The pixels, and properties of the file from which they were read, such as its precision.
     pub(super) coded: film::Picture,
     /// Compression of the file; `None` unless it is a JPEG or a lossy WebP.
     #[cfg(feature = "read")]
@@ -70,8 +70,8 @@ impl Picture {
         bytes
     }
 
-    /// Returns the text and the settings of the scene that the picture shows, if they are known: of
-    /// a picture that was rendered, and of a PNG that carries them.
+    /// Returns the text and the settings of the scene that the picture shows. They are known if the
+    /// picture was rendered, or read from a PNG that contains them.
     pub fn sources(&self) -> Option<&Sources> {
         self.sources.as_deref()
     }

@@ -1,4 +1,4 @@
-//! Pictures to files.
+//! Writes pictures to files.
 
 use std::{io, path::Path};
 
@@ -25,8 +25,8 @@ impl Picture {
     ///
     /// # Errors
     ///
-    /// The path has another extension, or one whose feature is left out, or the file cannot be
-    /// written.
+    /// The path has another extension, the crate was compiled without the feature of this format,
+    /// or the file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();
         let ending = path.extension().unwrap_or_default().to_ascii_lowercase();

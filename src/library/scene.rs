@@ -43,8 +43,8 @@ impl Scene {
         Self::read(Sources::new(Source::from_text("scene", text)))
     }
 
-    /// Makes a scene from data, for example from those of another scene after changes. The scene's
-    /// text is generated from the data.
+    /// Makes a scene from data, for example from a changed copy of another scene's data. The
+    /// scene's text is generated from the data.
     ///
     /// ```
     /// use pinhole::{Scene, glam::DVec3, scene::{Object, Sphere}};
@@ -68,8 +68,8 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// The data break a condition of the language, such as that a radius is more than 0. The
-    /// places of the mistakes are those in the generated text.
+    /// The data break a condition of the language, such as that a radius is more than 0. The places
+    /// of the mistakes are those in the generated text.
     pub fn from_data(data: &SceneData) -> Result<Self, Mistakes> {
         Self::parse(&formatted(data))
     }
@@ -117,7 +117,7 @@ impl Scene {
         &self.warnings
     }
 
-    /// Returns the text and the settings, to whose parts the places in warnings refer.
+    /// Returns the scene's text and settings. The places of warnings are positions in them.
     pub fn sources(&self) -> &Sources {
         &self.sources
     }

@@ -10,9 +10,10 @@ pub type LineColumn = (u32, u32);
 /// A text that is open in the editor.
 #[derive(Debug)]
 pub struct Document {
-    /// Version of the text, as the client counts versions.
+    /// Version number that the client has given to the text.
     pub version: i32,
-    /// The text as the only source of a scene, i.e. without any `--set` arguments.
+    /// Sources of the scene. The text is the only one, because an editor passes no `--set`
+    /// arguments.
     pub sources: Sources,
     encoding: Encoding,
 }
@@ -26,8 +27,8 @@ pub struct TextChange {
 }
 
 impl Document {
-    /// Makes the document of a text that the client has opened. `encoding` is the unit in which the
-    /// client counts columns.
+    /// Creates a document from a text that the client has opened. `encoding` is the unit in which
+    /// the client counts columns.
     pub fn new(name: &str, version: i32, text: String, encoding: Encoding) -> Self {
         Self {
             version,
@@ -70,9 +71,9 @@ impl Document {
         self.sources.file.text()
     }
 
-    /// Returns the byte offset of a position. Any position has an offset: a column beyond the end
-    /// of its line counts as the line's end, a position within a character as the character's
-    /// start, and a line beyond the last one as the end of the text.
+    /// Returns the byte offset of any position, even of an invalid one. A column beyond the end of
+    /// its line yields the end of the line. A column within a character yields the start of the
+    /// character. A line beyond the last one yields the end of the text.
     pub fn offset(&self, place: LineColumn) -> usize {
         let text = self.text();
         offset(text, self.sources.file.lines(), self.encoding, place).unwrap_or(text.len())
@@ -149,8 +150,8 @@ mod tests {
         let changes = [
             change([(0, 0), (0, 3)], "🎱"),
             change([(0, 2), (1, 0)], " "),
-            // This range starts after its own end, and beyond the end of the line. The next range
-            // is in the line after the last one.
+            // The first range ends before its start and exceeds the line. The second range is in
+            // the line after the last one, where an insertion appends to the text.
             change([(0, 99), (0, 3)], "!"),
             change([(2, 0), (2, 0)], "end"),
         ];

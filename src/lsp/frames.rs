@@ -20,9 +20,8 @@ use crate::{
     scene::{Count, Method, Sampler},
 };
 
-/// Maximum number of pixels of a frame, i.e. of a picture shown on a page: 16 million. A request
-/// for a larger frame is refused. No usual screen shows more pixels, and larger pictures can be
-/// rendered to files.
+/// Maximum number of pixels of a frame, i.e. of a picture that a page shows. A request for a larger
+/// frame is refused. Usual screens show fewer than these 16 million pixels.
 const MOST_PIXELS: u64 = 1 << 24;
 
 /// Queue of the requested frames that are not finished yet, the oldest first.
@@ -43,9 +42,9 @@ struct Frame {
 }
 
 impl Frames {
-    /// Adds the frame that a request asks for, and returns the earlier requests that it replaces.
-    /// If an equal frame of the same version is in the queue already, the new request takes it
-    /// over. Otherwise, frames of other versions of the text are dropped.
+    /// Adds the frame that a request asks for. If the queue contains an equal frame, the new
+    /// request replaces the earlier request for it. Otherwise, frames of other versions of the text
+    /// are dropped. Returns the identifiers of the requests that are replaced or dropped.
     pub fn push(
         &mut self,
         id: RequestId,
@@ -75,8 +74,8 @@ impl Frames {
         !self.remove(|frame| frame.id == *id).is_empty()
     }
 
-    /// Drops the frames of the text `uri`, or of all texts if it is `None`. Returns the requests
-    /// for these frames.
+    /// Drops the frames of the text `uri`, or of all texts if `uri` is `None`. Returns the
+    /// identifiers of the requests for the dropped frames.
     pub fn drop_of(&mut self, uri: Option<&Uri>) -> Vec<RequestId> {
         self.remove(|frame| uri.is_none_or(|uri| frame.uri == *uri))
     }

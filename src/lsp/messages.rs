@@ -4,18 +4,17 @@ use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response,
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// Maximum number of JSON values in a message. A message with more values is refused, because it
-/// could fill the memory: a JSON object takes about 400 bytes of memory, even if its text has only
-/// eight bytes. Even a message with 40 000 changes of a text stays below the limit.
+/// Maximum number of JSON values in a message; a message with more is refused. Without a limit,
+/// parsing a message could exhaust the memory: an object whose text has 8 bytes occupies about 400
+/// bytes. A message with 40 000 changes of a text is still below the limit.
 const MOST_VALUES: usize = 1 << 19;
 
 /// Error: a text is not a valid message.
 #[derive(Debug)]
 pub enum Malformed {
-    /// The text is answered with this response.
+    /// Response to send to the client: an error that says why the text is malformed.
     Answered(Value),
-    /// The text is a malformed response, which gets no answer. The contained message goes to the
-    /// log.
+    /// Message for the log, if the text is a malformed response. A response is never answered.
     Unanswered(String),
 }
 
@@ -26,7 +25,8 @@ pub enum Malformed {
 /// Returns [`Malformed`] if the text is not a message.
 pub fn read(text: &[u8]) -> Result<Message, Malformed> {
     let malformed = |id, code: ErrorCode, message: String| {
-        // The response type of lsp-server cannot have the id null, so the response is made as JSON.
+        // The response is made as JSON, because the response type of lsp-server does not support an
+        // `id` of null.
         let error = json!({ "code": code as i32, "message": message });
         let response = json!({ "jsonrpc": "2.0", "id": id, "error": error });
         Err(Malformed::Answered(response))
@@ -68,7 +68,7 @@ fn message(mut value: Value) -> Option<Message> {
     let id = match take("id") {
         None => None,
         Some(Value::String(id)) => Some(RequestId::from(id)),
-        // In the protocol, an integer has 32 bits, so a longer identifier is not valid.
+        // Integers in the protocol have 32 bits, so a larger number is not a valid identifier.
         Some(id) => Some(i32::try_from(id.as_i64()?).ok()?.into()),
     };
     let method = match take("method") {
@@ -112,9 +112,9 @@ fn value_bound(text: &[u8]) -> usize {
     values
 }
 
-/// Returns the identifier of a request whose other fields cannot be parsed, so that its sender gets
-/// an answer. Returns null if it has none. Browsers do send such requests: a string may contain
-/// half of a surrogate pair as an escape, which a Rust string cannot hold.
+/// Returns the identifier of a request that cannot be parsed, so that the sender can be answered.
+/// Returns null if no identifier is found. Browsers can send such requests: a JSON string may
+/// contain half of a surrogate pair as an escape, which a Rust string cannot hold.
 fn request_id(text: &[u8]) -> Value {
     #[derive(Deserialize)]
     struct Asked {
@@ -125,7 +125,8 @@ fn request_id(text: &[u8]) -> Value {
     identifier(asked.map(|asked: Asked| asked.id))
 }
 
-/// Returns `id` if a response may have it as its identifier, and otherwise null.
+/// Returns `id` if it is a string or a number, and otherwise null, which is the identifier of a
+/// response to an unknown request.
 fn identifier(id: Option<Value>) -> Value {
     id.filter(|id| id.is_string() || id.is_number())
         .unwrap_or_default()

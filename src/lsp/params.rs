@@ -39,11 +39,11 @@ pub fn at<T: serde::de::DeserializeOwned>(params: &Value, path: &str) -> Result<
     serde_json::from_value(found).map_err(Refusal::invalid)
 }
 
-/// Reads a field of the parameters; returns `None` if it is missing or null.
+/// Reads a field of the parameters. Returns `None` if it is missing or null.
 ///
 /// # Errors
 ///
-/// The field is something else.
+/// Returns an error if the field has another type than `T`.
 pub fn optional<T: serde::de::DeserializeOwned>(
     params: &Value,
     name: &str,

@@ -22,9 +22,9 @@ use crate::{
 /// Prefix of the method names of those requests that Pinhole adds to the protocol.
 pub const NAMESPACE: &str = "pinhole/";
 
-/// Answers the request whose method is [`NAMESPACE`] followed by `about`. The method for frames is
-/// handled elsewhere. `version` is `None` if the text has errors; most answers are then null.
-/// `analysis` is computed only if the request needs it.
+/// Answers the request whose method is [`NAMESPACE`] followed by `about`, except `pinhole/frame`,
+/// which the server handles itself. `version` is `None` if the text has errors; requests that need
+/// a scene are then answered with null. `analysis` is computed only if the request needs it.
 pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     about: &str,
     params: &Value,
@@ -51,8 +51,8 @@ pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     }
 }
 
-/// Answers with the limits of the number at a position of the text, and of the number's slider. The
-/// text may have errors.
+/// Answers with the smallest and largest value, the step and the other limits of a slider for the
+/// number at a position of the text. The text may have errors.
 fn limits(params: &Value, converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     let offset = converter.offset(at(params, "/position")?);
     Ok(editor::limits(analysis, offset).map_or(Value::Null, written_limits))
@@ -135,7 +135,8 @@ fn pick(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) ->
     }))
 }
 
-/// Returns the facts about an object of the scene, and its range in the text, as JSON.
+/// Describes an object of the scene as JSON: its index, kind, name and label, and its range in the
+/// text.
 fn object(index: usize, converter: Converter<'_>, version: &SceneVersion) -> Value {
     let object = &version.scene.objects[index];
     let mut facts = json!({
@@ -168,8 +169,8 @@ fn label(object: &Object) -> Cow<'_, str> {
 fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
     let shown = shown(params)?;
     let objects = &version.scene.objects;
-    // The first checkerboard is always listed, wherever it is in the text, since other objects
-    // stand on it.
+    // Unless the client names the objects, the first checkerboard is always listed, even if many
+    // objects precede it, since other objects stand on it.
     let floor = match shown {
         ShownObjects::First(_) => objects.iter().position(is_board),
         ShownObjects::Only(_) => None,
@@ -179,7 +180,8 @@ fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> 
     let listed = listed.map(|index| {
         let mut object = object(index, converter, version);
         let outline = overlays.objects.iter().find(|it| it.object == index);
-        // A checkerboard has no outline if the view axis does not hit it, but may still be visible.
+        // A checkerboard may be visible although it has no outline. Its place is then null, not
+        // "not in the picture".
         let outline = outline.filter(|it| !(it.lines.is_empty() && is_board(&objects[index])));
         object["place"] = json!(outline.map(|outline| place(outline, overlays.size)));
         object
@@ -242,8 +244,9 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion
     }))
 }
 
-/// Returns in words where an object is in the picture, such as "top left", judged by its first
-/// handle. If the handle is outside of the picture, returns a phrase that says so.
+/// Describes where an object is in the picture, such as "top left". Only its first handle is
+/// considered, i.e. the first point by which a user can drag the object. If this point is outside
+/// of the picture, returns a phrase that says so.
 fn place(outline: &ObjectOverlay, size: [u32; 2]) -> String {
     let at = outline.handles.first().and_then(|(_, at)| *at);
     let size = DVec2::from(size.map(f64::from));

@@ -1,8 +1,8 @@
 //! Caches the scene of one version of a text, together with the data from which its pictures and
 //! rays are traced ([`World`]).
 //!
-//! Both are computed only once for a version. So picking an object in a scene of 100 000 spheres
-//! does not read all spheres again.
+//! Both are computed only once for a version. Without the cache, each click on a picture of 100 000
+//! spheres would first prepare all spheres for tracing.
 
 use std::collections::VecDeque;
 
@@ -17,27 +17,29 @@ use crate::{
 };
 
 /// Maximum number of picture sizes for which the data of the tracer ([`World`]) are cached. For a
-/// further size, the oldest entry is dropped. Four suffice for the picture's own size and for the
-/// coarse pictures that a page shows until the full one is finished; more would take memory.
+/// further size, the oldest entry is dropped. A page needs few sizes at a time: the scene's own and
+/// some coarser ones, which it shows until the full picture is finished. A larger number would use
+/// more memory.
 const WORLDS: usize = 4;
 
 /// A version of a text without errors, with its scene.
 #[derive(Debug)]
 pub struct SceneVersion {
-    /// Number of the version, as the client counts versions.
+    /// Number that the client has given to this version of the text.
     pub number: i32,
     /// The scene that this version of the text describes.
     pub scene: Scene,
     /// Span of each object's name or, if an object has no name, of its keyword.
     pub selections: Vec<Span>,
     worlds: VecDeque<(u32, World)>,
-    /// Index of the object that was dragged last (`None` for the camera), and the text without the
-    /// other objects. The whole value is `None` before the first drag.
+    /// Text of the scene without all objects except the one that was dragged last, with the index
+    /// of this object. The index is `None` if the camera was dragged. The field is `None` before
+    /// the first drag.
     alone: Option<(Option<usize>, Sources)>,
 }
 
 impl SceneVersion {
-    /// Makes the version of an analyzed text. Returns `None` if the text has errors.
+    /// Builds the scene of an analyzed text. Returns `None` if the text has errors.
     pub fn new(analysis: &Analysis<'_>, number: i32) -> Option<Self> {
         let scene = analysis.scene()?;
         Some(Self {
@@ -71,9 +73,9 @@ impl SceneVersion {
         (&self.scene, &self.worlds[index].1)
     }
 
-    /// Returns the scene, and the text without all objects except `object`, or without any object
-    /// if it is `None`. A drag is computed in this shorter text. The text is cached, since each
-    /// movement of the pointer needs it.
+    /// Returns the scene, and a text that contains no other object than `object`, or no object at
+    /// all if it is `None`. A drag is computed from the shorter text, which is faster to evaluate.
+    /// The text is cached, since each movement of the pointer needs it.
     pub fn alone(&mut self, sources: &Sources, object: Option<usize>) -> (&Scene, &Sources) {
         let known = self.alone.take_if(|(known, _)| *known == object);
         let made = || (object, viewport::alone(sources, &self.scene, object));

@@ -1,14 +1,15 @@
-//! The language server as a value that receives and returns messages.
+//! A language server that receives and returns messages.
 //!
-//! Notifications are handled at once. Requests enter a queue, and each call of [`Server::advance`]
-//! answers some of them. Between two calls, a host can pass in other messages, such as a
-//! cancellation.
+//! Notifications, `initialize` and `shutdown` are handled at once. Other requests enter a queue,
+//! and each call of [`Server::advance`] answers some of them. Between two calls, a host can pass in
+//! other messages, such as a cancellation.
 //!
 //! Each answer is about the text at the time of the request: before a text changes, all waiting
 //! requests about it are answered. Diagnostics are computed only for the last version of a text.
 //!
-//! A frame, i.e. a picture for a page, takes longest. It is rendered in slices when there is no
-//! other work, and dropped if its text changes, unless its request has the parameter `last`.
+//! A frame, i.e. a picture for a page, is rendered in slices while no other request waits. It is
+//! dropped if its text changes, unless the text had errors and the request has the parameter
+//! `last`.
 
 use std::{
     cell::LazyCell,
@@ -56,16 +57,17 @@ pub struct Server {
     /// For each document whose picture was requested, the scene of the current version. The scene
     /// is `None` if this version has errors.
     scenes: HashMap<Uri, Option<SceneVersion>>,
-    /// For each text that has changed, the scene of an earlier version: the last one without
-    /// errors. While the text has errors, unfinished frames are rendered from this scene.
+    /// For each text that has changed, its last scene without errors, which belongs to an earlier
+    /// version. While the text has errors, requests with the parameter `last` are answered with
+    /// frames of this scene.
     last: HashMap<Uri, Option<SceneVersion>>,
     frames: Frames,
     log: fn(&str),
 }
 
 impl Server {
-    /// Makes a server that waits for `initialize`. It calls `log` with a message about each
-    /// malformed notification.
+    /// Creates a server that waits for `initialize`. For each notification that cannot be carried
+    /// out, it calls `log` with a message.
     pub fn new(log: fn(&str)) -> Self {
         Self {
             phase: Phase::Silent,
@@ -114,8 +116,8 @@ impl Server {
     }
 
     /// Does a portion of the work, and returns the messages to send. A portion is all waiting
-    /// requests about one text, together with the text's diagnostics. If there are none, a slice of
-    /// a frame is rendered instead.
+    /// requests about one text, together with the text's diagnostics. If no request waits and no
+    /// text has changed, renders a slice of a frame instead.
     pub fn advance(&mut self) -> Vec<Message> {
         let asked = self.waiting.front().map(uri);
         let changed = || self.changed.first().map(|uri| Some(Uri(uri.clone())));
@@ -172,7 +174,7 @@ impl Server {
             let version = self.scenes.entry(uri.clone());
             let version = version.or_insert_with(|| SceneVersion::new(analysis, number));
             if version.is_some() && about == "frame" {
-                // The current version is now the last one without errors, so an older one is not
+                // The current version has no errors, so the scene of an earlier version is not
                 // needed.
                 self.last.remove(&uri);
             }
@@ -216,28 +218,29 @@ impl Server {
         Some(response(id, answer))
     }
 
-    /// Handles a change of a text. If the text had no errors before, stores its scene in the field
-    /// `last` and drops its frames. Returns the answers to the requests for these frames.
+    /// Moves the scene of a text that has changed to the field `last`, and drops the text's frames.
+    /// Returns error responses to the requests for these frames. Does nothing if there is no scene,
+    /// for example because the text had errors.
     fn outdate(&mut self, uri: &Uri) -> Vec<Message> {
         let Some(version @ Some(_)) = self.scenes.remove(uri) else {
-            // The text had errors already. Its unfinished frames show the last version without
-            // errors, and rendering them continues.
+            // The text had errors already, or its scene was not requested since its last change. So
+            // its unfinished frames show the scene in `last`, and rendering them continues.
             return Vec::new();
         };
         self.last.insert(uri.clone(), version);
         self.drop_frames(uri)
     }
 
-    /// Removes the scenes of a text that was opened or closed, and drops its frames. Returns the
-    /// answers to the requests for these frames.
+    /// Removes the scenes of a text that was opened or closed, and drops its frames. Returns error
+    /// responses to the requests for these frames.
     fn forget(&mut self, uri: &Uri) -> Vec<Message> {
         self.scenes.remove(uri);
         self.last.remove(uri);
         self.drop_frames(uri)
     }
 
-    /// Drops the frames of a text that has changed. Returns the answers to the requests for these
-    /// frames.
+    /// Drops the frames of a text that has changed. Returns error responses to the requests for
+    /// these frames.
     fn drop_frames(&mut self, uri: &Uri) -> Vec<Message> {
         let dropped = self.frames.drop_of(Some(uri)).into_iter();
         let changed = |id| {
@@ -385,7 +388,7 @@ fn uri(request: &Request) -> Option<Uri> {
 ///
 /// # Errors
 ///
-/// The request is refused, or `answer` panics.
+/// Returns an error if `answer` fails or panics.
 pub fn catch_panics<T>(answer: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
     panic::catch_unwind(AssertUnwindSafe(answer)).unwrap_or_else(|_| {
         let message = "the answer failed, which is a mistake of Pinhole".to_owned();

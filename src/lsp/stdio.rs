@@ -1,9 +1,10 @@
 //! Runs the language server on standard input and output, as editors start it.
 //!
-//! A separate thread reads the input, so that all messages that have arrived are handled before the
-//! server continues its work. Requests that were cancelled meanwhile are not computed, and only the
-//! last version of a text gets diagnostics. The crate lsp-server is not used for reading: it
-//! allocates memory of any announced length and stops at the first malformed message.
+//! A separate thread reads the input, so that the server handles all messages that have arrived
+//! before it works on an answer. Thus it never computes an answer to a request that is already
+//! cancelled, or diagnostics for a text that is already changed. The crate lsp-server is not used
+//! for reading: it allocates as much memory as a message's header announces, and it stops at the
+//! first malformed message.
 
 use std::{
     io::{self, BufRead, BufReader, Read, Write},
@@ -19,7 +20,7 @@ use super::{
     server::Server,
 };
 
-/// A message from the client. If the message is malformed, the response to it instead.
+/// Message from the client, or the response to it if it is malformed.
 type Incoming = Result<Message, Value>;
 
 /// Runs a server until the client sends `exit` or the input ends. Returns whether the connection
@@ -101,16 +102,16 @@ fn read(input: impl Read, sender: &Sender<Incoming>, log: fn(&str)) {
     }
 }
 
-/// Maximum length of a message from the client, in bytes: 1 GiB. A longer announced length is taken
-/// for invalid input, and reading ends, since it is unknown where the next message starts. Texts of
-/// scenes are far shorter; memory is allocated only for bytes that arrive.
+/// Maximum length of a message from the client, in bytes: 1 GiB. If a header announces a longer
+/// message, the header is assumed to be wrong, and reading ends, because the start of the next
+/// message is unknown. Texts of scenes are far shorter.
 const LONGEST: u64 = 1 << 30;
 
-/// Maximum length of a header line, in bytes. A longer line is invalid input, and without a limit
-/// it could fill the memory. Usual lines have about thirty bytes.
+/// Maximum length of a header line, in bytes. Without a limit, a line that never ends could exhaust
+/// the memory. Usual lines have about thirty bytes.
 const LONGEST_HEADER: u64 = 4096;
 
-/// Error of reading a message.
+/// Reason why a message could not be read.
 enum Failed {
     /// The message is invalid, but the next one may be valid.
     Once(String),

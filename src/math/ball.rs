@@ -26,10 +26,10 @@ pub struct Ball<T: Real> {
 /// than 2^−41. The factor exceeds 1 by 2^−40, which is more.
 pub const UP: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
-/// Factor of the bound on the rounding error of a ball's computed midpoint: the bound is four times
-/// [`UNIT`](Real::UNIT) times the midpoint. The error is at most `UNIT` times the true number,
-/// which is less than 2 · `UNIT` times the computed one. The bound is twice as large, which costs
-/// nothing except an occasional decision in the next precision.
+/// Factor in the bound on the rounding error of a ball's midpoint. The bound is this factor times
+/// [`UNIT`](Real::UNIT) times the computed midpoint. A factor of 2 would suffice, because `UNIT`
+/// bounds the error relative to the true number. The larger factor seldom matters: a decision that
+/// becomes uncertain is made in the next precision.
 const ROUNDING: f64 = 4.0;
 
 impl<T: Real> Ball<T> {
@@ -70,10 +70,8 @@ impl<T: Real> Ball<T> {
         self.mid.magnitude()
     }
 
-    /// Returns whether the ball's relative error is at most 2^−80, far below that of `f64`. A
-    /// computation in a higher precision is then not worthwhile: it would help only with decisions
-    /// that are uncertain in [`Double`](super::Double), and these decisions allow for an error of
-    /// this size.
+    /// Returns whether the ball's relative error is at most 2^−80, far below that of `f64`. If so,
+    /// the caller need not repeat the computation in a higher precision.
     pub fn is_precise(&self) -> bool {
         /// Maximum radius of a precise ball, divided by the absolute value of its midpoint: 2^−80,
         /// which is 27 bits below the unit roundoff of `f64`.
@@ -88,8 +86,8 @@ impl<T: Real> Ball<T> {
     }
 
     /// Compares the number with zero. Returns a [`Doubt`] if the sign is uncertain. The highest
-    /// precision never returns a doubt: a number that cannot be distinguished from zero counts as
-    /// zero.
+    /// precision never returns a doubt: a number that cannot be distinguished from zero is treated
+    /// as zero.
     #[inline]
     pub fn sign(&self) -> Result<Ordering, Doubt> {
         if self.is_clear() {
@@ -115,7 +113,8 @@ impl<T: Real> Ball<T> {
     /// Computes `self` · `power`, where `power` is a power of two.
     #[inline]
     pub fn times_power(&self, power: f64) -> Self {
-        // The product with a power of two is exact unless it underflows.
+        // The product with a power of two is exact, but it may underflow. So `TINY` is added to the
+        // radius.
         Self {
             mid: self.mid.times(&T::from_f64(power)),
             rad: self.rad * power * UP + T::TINY,
@@ -125,7 +124,8 @@ impl<T: Real> Ball<T> {
     /// Computes `self` · 2^`exponent`.
     pub fn scaled(&self, exponent: i32) -> Self {
         let mid = self.mid.scaled(exponent);
-        // The product with a power of two is exact unless it underflows.
+        // The product with a power of two is exact, but it may underflow. So the maximum error by
+        // underflow is added to the radius.
         let lost = underflow_loss::<T>(self.mid.is_zero());
         Self {
             mid,
@@ -151,8 +151,8 @@ impl<T: Real> Ball<T> {
 
     /// Returns the floor, the greatest integer that is not greater than the number, and whether the
     /// floor is odd. Returns a [`Doubt`] if an integer lies within the ball. The highest precision
-    /// never returns a doubt: a number that cannot be distinguished from an integer counts as this
-    /// integer.
+    /// never returns a doubt: a number that cannot be distinguished from an integer is treated as
+    /// this integer.
     pub fn floor(&self) -> Result<(Self, bool), Doubt> {
         let (floor, odd) = self.mid.floor();
         let ceiling = floor.plus(&T::from_f64(1.0));
@@ -202,9 +202,11 @@ impl<T: Real> Ball<T> {
             };
         }
         let mid = self.mid.over(&other.mid);
-        // a' and b' are the true numbers, and |b'| is at least `least`, which is |b| minus the
-        // radius of b. The error is therefore at most |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' −
-        // b|)/|b'|.
+        // Let a and b be the midpoints, and a' and b' the true numbers. Then the error is
+        //
+        //   |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' − b|)/|b'|.
+        //
+        // Here, |b'| is at least `least`: |b| minus the radius of b.
         let least = other.size().without(other.rad * UP);
         let lost = underflow_loss::<T>(self.mid.is_zero());
         let inherited = (self.rad + mid.magnitude() * other.rad) / least * UP + lost;
@@ -229,7 +231,7 @@ impl<T: Real> std::ops::Neg for Ball<T> {
     }
 }
 
-/// Implements an operator for all combinations of values and references.
+/// Implements an arithmetic operator of balls for all combinations of values and references.
 macro_rules! operator {
     ($trait:ident, $method:ident) => {
         operator!($trait, $method, &Ball<T>, &Ball<T>);
@@ -254,8 +256,8 @@ operator!(Sub, sub);
 operator!(Mul, mul);
 operator!(Div, div);
 
-/// Returns the maximum error of an operation by underflow: 0 if its exact result is 0 (`is_zero`),
-/// otherwise [`TINY`](Real::TINY).
+/// Returns the maximum error of an operation by underflow: [`TINY`](Real::TINY), or 0 if the exact
+/// result is known to be 0.
 #[inline]
 fn underflow_loss<T: Real>(is_zero: bool) -> T::Radius {
     if is_zero { T::Radius::ZERO } else { T::TINY }

@@ -16,8 +16,8 @@ pub struct Big(pub(super) Float);
 pub(super) type Float = FBig<HalfEven, 2>;
 
 /// Number of bits of a [`Big`]. If a decision is uncertain in [`Double`](super::Double), the
-/// numbers differ by less than about 2^−90. The remaining bits are far more than any formula loses
-/// in its intermediate steps. A difference that 320 bits do not resolve counts as 0.
+/// compared numbers agree in about 90 bits. The other 230 bits are far more than the formulas lose
+/// in their intermediate steps. A difference that 320 bits do not resolve is treated as 0.
 pub(super) const PRECISION: usize = 320;
 
 /// Number of additional bits, beyond [`PRECISION`], in the few steps that subtract nearly equal
@@ -25,8 +25,8 @@ pub(super) const PRECISION: usize = 320;
 const GUARD: usize = 320;
 
 impl Big {
-    /// Number of bits of a [`Big`]. An integer that would need more bits is rounded to an even
-    /// number.
+    /// Number of bits of a [`Big`]. An integer of more bits is rounded, so that its last bit is 0,
+    /// and it is always even.
     pub const BITS: i32 = PRECISION as i32;
 
     /// Rounds `x` to the nearest big number.
@@ -71,9 +71,8 @@ impl Big {
 }
 
 /// Compares an angle with `half_turns` half turns (180° each). If the angle's part in radians is 0,
-/// degrees are compared exactly. Otherwise, the comparison involves the irrational number π, so
-/// that the difference is never zero. The difference is computed with 640 bits, more than can
-/// cancel.
+/// degrees are compared exactly. Otherwise, π is involved. Since π is irrational, the difference is
+/// never zero, and its sign is determined with 640 bits.
 pub fn compare_half_turns(angle: Angle, half_turns: f64) -> Ordering {
     let degrees = exact(angle.degrees) - exact(180.0 * half_turns);
     if angle.radians == 0.0 {

@@ -41,8 +41,8 @@ impl Plane {
     /// Returns whether two planes are exactly equal: their normals are parallel, and the vector
     /// between their points is perpendicular to both normals.
     pub fn equals(&self, other: &Self) -> bool {
-        // Axial planes are compared first, which is fast. If a box stands on a floor, or boxes
-        // stand side by side, they are compared for many samples.
+        // Axial planes are compared first, because this is fast. Many samples need this comparison
+        // if a box stands on a floor, or if boxes stand side by side.
         if let (Self::Axial { axis: a, at: p }, Self::Axial { axis: b, at: q }) = (self, other) {
             return a == b && p == q;
         }
@@ -93,8 +93,8 @@ pub fn forms_triangle([a, b, c]: [f64; 3]) -> bool {
 fn exceeds(one: f64, other: f64, bound: f64) -> bool {
     let sum = one + other;
     if sum != bound {
-        // Rounding is monotonic, so that the exact sum lies on the same side of `bound` as the
-        // rounded one.
+        // Rounding is monotonic. So if the rounded sum is not equal to `bound`, the exact sum lies
+        // on the same side of `bound`.
         return sum > bound;
     }
     let error = two_sum(one, other).lo;
@@ -112,9 +112,10 @@ pub fn box_corners(center: DVec3, size: DVec3) -> (DVec3, DVec3) {
     (corner(-1.0), corner(1.0))
 }
 
-/// Returns `a` + `b`/2, rounded once. Half of a subnormal number need not be an `f64`; therefore
-/// (2a + b)/2 is computed. If 2a + b is rounded, it is not subnormal, and halving it is exact. If
-/// it overflows, a + b/2 is computed; `b`/2 is then exact or too small to matter.
+/// Returns `a` + `b`/2, rounded once. Half of a subnormal number may itself need rounding, so the
+/// formula (2a + b)/2 is used. Only the sum is rounded, because a sum that needs rounding is not
+/// subnormal, and halving it is exact. If the sum overflows, a + b/2 is computed instead. Then b/2
+/// is exact, or negligible beside a.
 fn offset_by_half(a: f64, b: f64) -> f64 {
     let twice = 2.0 * a + b;
     if twice.is_finite() {

@@ -1,11 +1,12 @@
-//! Error bounds, which are non-negative numbers. Those of big numbers have a wider range than
-//! `f64`. Operations round to nearest. If an error bound must not be too small, callers multiply it
-//! by [`UP`](super::UP).
+//! Error bounds, which are non-negative numbers. Error bounds of big numbers have a wider range
+//! than `f64`. Operations round to the nearest number, so callers multiply a bound by
+//! [`UP`](super::UP) where it must not be too small.
 
 use std::ops::{Add, Div, Mul};
 
-/// A non-negative number that bounds an error. Its operations round to nearest. If a bound must not
-/// be too small, callers multiply it by a factor above 1.
+/// A non-negative number that bounds an error. Operations round to the nearest number, so a
+/// computed bound can be slightly too small. Where this matters, callers multiply it by a factor
+/// above 1.
 pub trait Radius:
     Copy
     + std::fmt::Debug
@@ -48,8 +49,8 @@ impl Radius for f64 {
     #[inline]
     fn scaled(self, exponent: i32) -> Self {
         match exponent {
-            // In this range, the power of two is a normal number, and the product is rounded as
-            // `ldexp` rounds it.
+            // In this range, the power of two is a normal number, so the product equals the result
+            // of `ldexp` and is faster.
             -1022..=1023 => self * f64::from_bits(((exponent + 1023) as u64) << 52),
             _ => libm::ldexp(self, exponent),
         }
@@ -76,10 +77,10 @@ pub struct Wide {
 }
 
 impl Wide {
-    /// Maximum difference between the exponents of two summands. If it is greater, the smaller
-    /// summand is replaced by a number 2^1000 times smaller than the larger one. The replacement
-    /// changes the sum far less than the factor [`UP`](super::UP) of error bounds does. With a
-    /// greater limit, the mantissa might underflow.
+    /// Maximum difference between the exponents of two summands. If the difference is greater, the
+    /// smaller summand is scaled until its exponent is 1000 less than that of the larger one. The
+    /// error is negligible, since error bounds are enlarged by the factor [`UP`](super::UP) anyway.
+    /// With a greater maximum, the scaled mantissa could underflow.
     const FAR: i64 = 1000;
 
     /// Returns `mantissa` · 2^`exponent`, where the mantissa may be any number that is not
@@ -180,8 +181,7 @@ impl Radius for Wide {
     fn exponent(self) -> i32 {
         let of_mantissa = i64::from(self.mantissa != 0.0);
         /// Maximum absolute value of the returned exponent. Any value works that is far beyond the
-        /// exponents of `f64`, so that scaling by it leaves the range of `f64`, and that can be
-        /// added and negated without overflow.
+        /// exponents of `f64`, but so small that sums of returned exponents do not overflow.
         const LIMIT: i64 = 1 << 20;
         (self.exponent + of_mantissa).clamp(-LIMIT, LIMIT) as i32
     }

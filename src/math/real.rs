@@ -24,8 +24,8 @@ pub trait Real: Clone + Debug + Sized {
     /// Maximum absolute error of one operation that underflows. It also covers an underflow in the
     /// computation of the result's error bound.
     const TINY: Self::Radius;
-    /// Whether the precision is the highest one, in which a value that cannot be distinguished from
-    /// zero counts as zero.
+    /// Whether the precision is the highest one. In this precision, a value that cannot be
+    /// distinguished from zero is treated as zero.
     const LAST: bool;
 
     /// Converts an `f64` without rounding.

@@ -18,7 +18,6 @@ pub enum SimdWidth {
     Baseline,
 }
 
-/// Whether loops are also compiled for vectors wider than those of every processor of the
-/// architecture. This is done on x86-64. On other architectures, a second copy would only enlarge
-/// the program.
+/// Whether loops are also compiled for wider vectors than every processor of the architecture has.
+/// This is done on x86-64. On other architectures, a second copy would only enlarge the program.
 pub const HAS_WIDER: bool = cfg!(target_arch = "x86_64");

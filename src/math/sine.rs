@@ -10,9 +10,9 @@ use super::{Angle, Ball, Big, Double, Real, double::two_product};
 
 /// Maximum absolute value of an angle, in radians, at which its sine and cosine are computed by
 /// series in double-double. For larger angles, [`Big`] computes them, because its π has enough
-/// digits for any angle. The limit is less than 2^20 quarter turns. Up to it, the truncation of π/2
-/// amounts to at most 2^20·2^−163 = 2^−143, which is negligible beside the unit roundoff of
-/// double-double, 2^−102.
+/// digits for any angle. The limit is less than 2^20 quarter turns. So the error from the
+/// truncation of π/2 is at most 2^20·2^−163 = 2^−143, which is negligible beside the unit roundoff
+/// of double-double, 2^−102.
 const MAX_RADIANS: f64 = (1u64 << 20) as f64;
 
 /// Number of terms of the series of the sine, and of the series of the cosine. The argument r is at
@@ -49,8 +49,9 @@ static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
     let reciprocals: [Ball<Double>; 2 * TERMS] = array::from_fn(|n| {
         factorial = factorial.times(&Big::from_f64(n.max(1) as f64));
         let reciprocal = Ball::from_big(&Big::from_f64(1.0).over(&factorial));
-        // The coefficients have the signs +, +, −, −, and so on: the cosine has those of even n,
-        // and the sine those of odd n.
+        // The list holds the coefficients of both series: those of the cosine at even n, and those
+        // of the sine at odd n. Their signs alternate within each series, so they are +, +, −, −,
+        // and so on.
         if n % 4 < 2 { reciprocal } else { -reciprocal }
     });
     Constants {
@@ -62,8 +63,8 @@ static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
 });
 
 /// Returns the sine and the cosine of an angle. For a multiple of 90°, they are exactly 0 and ±1.
-/// In double-double, series compute them for angles up to 2^20 radians. Otherwise, they are rounded
-/// from a [`Big`].
+/// In double-double, they are computed by series if the angle is at most 2^20 radians. Otherwise,
+/// they are rounded from a [`Big`].
 pub fn sin_cos<T: Real>(angle: Angle) -> (Ball<T>, Ball<T>) {
     if T::UNIT == Double::UNIT && angle.radians.abs() <= MAX_RADIANS {
         let (sin, cos) = by_series(angle);
@@ -73,8 +74,9 @@ pub fn sin_cos<T: Real>(angle: Angle) -> (Ball<T>, Ball<T>) {
     (Ball::from_big(&sin), Ball::from_big(&cos))
 }
 
-/// Converts a ball of [`Double`] to a ball of `T`, which must be [`Double`], too. The sum of the
-/// two parts is rounded to the same parts, so that the conversion changes nothing.
+/// Converts a ball of [`Double`] to a ball of `T`, which must be [`Double`], too. The conversion
+/// changes nothing: the two `f64` of a double-double number are already its rounded sum and the
+/// rounding error.
 fn from_double<T: Real>(x: &Ball<Double>) -> Ball<T> {
     let [hi, lo, rad] = [x.mid.hi, x.mid.lo, x.rad].map(T::from_f64);
     Ball {
@@ -103,7 +105,7 @@ fn sin_cos_degrees(degrees: f64) -> (Ball<Double>, Ball<Double>) {
 }
 
 /// Returns the sine and the cosine of an angle in radians. The angle is reduced modulo π/2 in three
-/// steps (Cody and Waite), of which the first two subtract exact products.
+/// steps (Cody and Waite). The first two steps subtract exact products.
 fn sin_cos_radians(radians: f64) -> (Ball<Double>, Ball<Double>) {
     let [first, second, third] = CONSTANTS.quarter_turn;
     let quarters = (radians / first).round();
@@ -174,12 +176,13 @@ mod tests {
     use super::*;
 
     /// Maximum radius of the ball of a sine or cosine, in units of double-double: for angles in
-    /// degrees, for angles in radians, and for angles with both parts. It follows from the rules of
-    /// [`Ball`]. The reduced angle r has an error of 8 units of r after its product with a rounded
-    /// constant (degrees), and of at most 12·π/4 units after three differences (radians). At |r| =
-    /// π/4, the series then give 19.9 units of the sine and 19.6 of the cosine for degrees, and
-    /// 23.4 and 22.1 for radians. For angles with both parts, two products of numbers that are √½
-    /// are added: 2 + 2 + 4 + √½·(19.9 + 19.6 + 23.4 + 22.1) = 68.1.
+    /// degrees, in radians, and with both parts. The values are upper bounds that follow from the
+    /// error rules of [`Ball`]:
+    ///
+    /// - Reduced angle r: at most 8 units of r for degrees, and 12·π/4 units for radians.
+    /// - Sine and cosine at |r| = π/4: 19.9 and 19.6 units for degrees, 23.4 and 22.1 for radians.
+    /// - Angles with both parts, where two products of numbers about √½ are added:
+    ///   2 + 2 + 4 + √½·(19.9 + 19.6 + 23.4 + 22.1) = 68.1 units.
     const WIDEST: [f64; 3] = [20.0, 24.0, 69.0];
 
     /// Returns whether the balls of the sine and the cosine contain the true numbers and are no

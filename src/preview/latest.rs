@@ -17,7 +17,7 @@ pub struct Latest<T> {
     state: Mutex<SlotState<T>>,
     news: Condvar,
     /// Whether the value that was taken last is outdated, because a newer one is in the slot or the
-    /// slot has ended. It is written only while `state` is locked, so that it always agrees with
+    /// slot is closed. It is written only while `state` is locked, so that it always agrees with
     /// `state`.
     stale: AtomicBool,
 }
@@ -49,7 +49,7 @@ impl<T> Latest<T> {
         state.next.take()
     }
 
-    /// Waits for a value and takes it. Returns `None` if the slot has ended.
+    /// Waits for a value and takes it. Returns `None` if [`end`](Self::end) was called.
     pub fn take(&self) -> Option<T> {
         self.take_while(Duration::MAX, || {})
     }
@@ -78,8 +78,8 @@ impl<T> Latest<T> {
         }
     }
 
-    /// Returns a flag that is set as soon as a newer value is put into the slot or the slot ends.
-    /// Work on the value taken last should then stop.
+    /// Returns a flag that is set as soon as a newer value is put into the slot or the slot is
+    /// closed. Work on the value taken last should then stop.
     pub fn stale(&self) -> &AtomicBool {
         &self.stale
     }
@@ -90,13 +90,13 @@ impl<T> Latest<T> {
         self.change(|state| state.next = Some(value));
     }
 
-    /// Ends the passing of values through the slot, and sets the flag [`stale`](Self::stale).
-    /// Waiting threads then get `None`.
+    /// Closes the slot, and sets the flag [`stale`](Self::stale). Threads that wait for a value get
+    /// `None`.
     pub fn end(&self) {
         self.change(|state| state.is_over = true);
     }
 
-    /// Returns whether the slot has ended, i.e. whether no further values are passed.
+    /// Returns whether the slot is closed, i.e. whether no further values are passed.
     pub fn is_over(&self) -> bool {
         lock(&self.state).is_over
     }

@@ -1,8 +1,8 @@
 //! Provides the current content of a file that is being edited.
 //!
-//! In: a path. Out: the file's content, at the start and after each change, and a flag that is set
-//! when the content taken last is outdated. The module does not depend on scenes or pictures. Its
-//! callers decide how to use the content, and when to stop work on it.
+//! Reads the file at the start and after each change, and sets a flag when the content taken last
+//! is outdated. The module does not depend on scenes or pictures. Its callers decide how to use the
+//! content, and when to stop work on it.
 
 mod latest;
 mod watcher;

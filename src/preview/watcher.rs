@@ -4,17 +4,18 @@
 //! renaming it, which removes the old file together with its watch. For a symbolic link, the folder
 //! of the link's target is watched as well.
 //!
-//! Events come in bursts, so the file is read after a short time without events. The debouncers of
-//! the crate notify are not used. The small one drops the kind of an event, so that reading the
-//! file would trigger it. The large one tracks renamed files, which is not needed.
+//! Events come in bursts, so the file is read after a short time without events. The crates that
+//! extend notify by such a delay are not used. One of them, notify-debouncer-mini, does not report
+//! the kind of an event, so that even reading the file would cause another reading. The other,
+//! notify-debouncer-full, mainly tracks renamed files, which is not needed.
 //!
-//! In addition, the file's time and length are checked once a second. This detects changes in
-//! folders without events, such as those on other machines, on systems that have no watches left,
-//! and in folders that are removed and created again.
+//! In addition, the file's time, length and identity are checked once a second. This detects
+//! changes that cause no event: in folders on other machines, in folders that were removed and
+//! created again, and if the system's number of watches is exhausted.
 //!
 //! A save is recognized by the file's time, length and identity, not only by its text, because
 //! people who save an unchanged text expect a reaction. Other changes that an editor makes to a
-//! file after writing it affect none of these three.
+//! file after writing it, such as changed permissions, affect none of these three.
 
 use std::{
     collections::BTreeSet,
@@ -37,8 +38,9 @@ use notify::{
 use super::Latest;
 use crate::files;
 
-/// Time without events from the file system after which a changed file is read. An editor that
-/// saves causes several events within a few milliseconds; a longer time would delay the picture.
+/// Time without events from the file system after which a changed file is read. An editor causes
+/// several events within a few milliseconds when it saves. With a shorter time, the file would be
+/// read for each of them; a longer time would delay the picture.
 const QUIET_TIME: Duration = Duration::from_millis(10);
 
 /// Maximum time from the first event of a change to reading the file. The file is then read even if
@@ -54,9 +56,8 @@ const ABSENCE: Duration = Duration::from_millis(300);
 /// missing.
 const LONGEST_ABSENCE: Duration = Duration::from_secs(2);
 
-/// Time between two checks of the file without an event. A check reads only the file's time and
-/// length, so once a second costs nearly nothing, and a change without an event is still noticed
-/// soon.
+/// Time between two checks for changes that caused no event. A check reads only the file's
+/// metadata, so it costs nearly nothing; a longer time would delay the picture.
 const POLL_INTERVAL: Duration = Duration::from_secs(1);
 
 /// The content of a file after a change.
@@ -68,9 +69,10 @@ pub struct FileContent {
     pub since: Instant,
 }
 
-/// Watches a file until the returned slot ends or is dropped. The slot contains the file's content
-/// at once, and gets it again after each save, even of an unchanged text. The function `read` reads
-/// the file; it must not wait for other processes ([`files::open`]).
+/// Watches a file until the returned slot is closed or dropped. The file's content is put into the
+/// slot at once and after each save, even if the text is unchanged. The function `read` reads the
+/// file. It must not block on a pipe, for example, because watching would stop; see
+/// [`files::open`].
 ///
 /// # Errors
 ///
@@ -113,7 +115,8 @@ struct Watcher<R> {
     /// Source of the events; `None` if the system cannot watch files.
     notifier: Option<RecommendedWatcher>,
     events: Receiver<notify::Result<Event>>,
-    /// A sender that keeps the channel of events open even if there is no notifier.
+    /// Sender that keeps the channel of events open if there is no notifier. On a closed channel,
+    /// waiting would return at once.
     _sender: Sender<notify::Result<Event>>,
     /// Folders that are watched at present.
     folders: BTreeSet<PathBuf>,
@@ -149,8 +152,9 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
                         self.follow();
                         continue;
                     }
-                    // The file has changed without an event. Either the watch is lost because a
-                    // watched folder was removed, or the folder does not report events.
+                    // The file has changed without an event. Either a watched folder was removed,
+                    // and its watch with it, or the folder does not report events. So all folders
+                    // are watched anew.
                     self.forget_folders();
                 }
             }
@@ -229,8 +233,8 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
             Ok(bytes) => Ok(bytes.clone()),
             Err(error) => Err(error.to_string()),
         };
-        // If the clock is coarse, or if the file's time was set back, only the text shows that the
-        // file was saved.
+        // The content is compared as well. If the clock is coarse, or if the file's time was set
+        // back, a save may leave the time, length and identity of the file unchanged.
         if stamp != self.stamp || self.last_read.as_ref() != Some(&read) {
             self.stamp = stamp;
             self.last_read = Some(read);
@@ -238,9 +242,9 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Reads the file's content, together with its time, length and identity from before reading.
-    /// If the file was written meanwhile, reads it again: new content with old data would later be
-    /// mistaken for another save.
+    /// Reads the file's content, and returns it with the time, length and identity that the file
+    /// had before. If the file was written while it was read, reads it again: otherwise, the next
+    /// check would find a new time and report another save.
     fn read_when_still(&self) -> (Option<Stamp>, io::Result<Vec<u8>>) {
         let end = Instant::now() + LONGEST_BURST;
         loop {
@@ -253,9 +257,10 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Reads the file's content, together with its time, length and identity from before reading.
-    /// If the file is missing or empty, waits until it has content, except at the first reading.
-    /// Waits for [`ABSENCE`] after the last event, but at most for [`LONGEST_ABSENCE`].
+    /// Reads the file's content, and returns it with the time, length and identity that the file
+    /// had before. If the file is missing or empty, reads it again until it has content, except at
+    /// the first reading. Gives up when no event has arrived for [`ABSENCE`], at the latest after
+    /// [`LONGEST_ABSENCE`].
     fn read_when_there(&self) -> (Option<Stamp>, io::Result<Vec<u8>>) {
         let start = Instant::now();
         let mut end = start + ABSENCE;

@@ -1,4 +1,5 @@
-//! The board's integral over a polygon in hundreds of bits, square by square.
+//! Integrates the sign of a checkerboard's picture, +1 or −1, over a polygon. The integral is
+//! computed square by square with 256-bit numbers.
 
 use dashu_int::IBig;
 use glam::DVec2;
@@ -6,15 +7,16 @@ use glam::DVec2;
 use super::oracle::{N, Number};
 use crate::math::Real;
 
-/// The arithmetic of the integral.
+/// Arithmetic of the computations with a checkerboard: every result is rounded to 256 bits.
 pub const NUMBER: Number = Number { bits: 256 };
 
-/// A board's linear forms in hundreds of bits.
+/// A checkerboard seen by a camera, as linear forms a·x + b·y + c that map a point (x, y) of the
+/// picture to the board. Each form is given by its three coefficients.
 pub struct ExactBoard {
-    /// The forms N_a and N_b: the point (x, y) of the picture shows the point (N_a/L, N_b/L) of the
-    /// board, in squares.
+    /// The linear forms N_a and N_b. The point (x, y) of the picture shows the point (N_a/L, N_b/L)
+    /// of the board, in squares, where L is the form `below`.
     pub across: [[N; 3]; 2],
-    /// The form L.
+    /// The linear form L, the denominator of both coordinates on the board.
     pub below: [N; 3],
 }
 
@@ -22,9 +24,9 @@ pub struct ExactBoard {
 pub type Point = [N; 2];
 
 impl ExactBoard {
-    /// Returns a board of which the forms N_a, N_b and L in `forms` may be the rounded ones: each
-    /// of their factors is multiplied by 1 plus the number of unit roundoffs in `roundings`, from
-    /// −1 to 1.
+    /// Returns a board whose linear forms N_a, N_b and L differ from `forms` by rounding errors.
+    /// Each coefficient is multiplied by 1 + k·u, where k is its number in `roundings`, from −1 to
+    /// 1, and u is the unit roundoff of `f64`.
     pub fn of_rounded(forms: [[f64; 3]; 3], roundings: [[f64; 3]; 3]) -> Self {
         let [a, b, below] = [0, 1, 2].map(|i| {
             [0, 1, 2].map(|k| {
@@ -36,12 +38,14 @@ impl ExactBoard {
         Self { across, below }
     }
 
-    /// Integrates the board's sign over a convex polygon on which L is positive.
+    /// Integrates the board's sign, +1 on even and −1 on odd squares, over a convex polygon. The
+    /// denominator `below` must be positive on the polygon.
     pub fn integral(&self, polygon: &[DVec2]) -> N {
         self.integral_of(polygon.iter().copied().map(point).collect())
     }
 
-    /// Integrates the board's sign over a convex polygon on which L is positive.
+    /// Integrates the board's sign, +1 on even and −1 on odd squares, over a convex polygon. The
+    /// denominator `below` must be positive on the polygon.
     pub fn integral_of(&self, polygon: Vec<Point>) -> N {
         let mut sum = N::ZERO;
         self.strips(0, polygon, &mut |row, strip| {
@@ -54,19 +58,22 @@ impl ExactBoard {
         sum
     }
 
-    /// Returns the number of lines of both families that cross a convex polygon, or 1 if none does.
+    /// Returns the number of the board's grid lines, in both directions, that cross a convex
+    /// polygon. Returns 1 if no line crosses it.
     pub fn lines(&self, polygon: &[DVec2]) -> usize {
         let mut count = 0;
         for family in 0..2 {
             let polygon = polygon.iter().copied().map(point).collect();
             self.strips(family, polygon, &mut |_, _| count += 1);
         }
-        // There is one strip more than lines.
+        // In each of the two directions, the lines divide the polygon into one strip more than
+        // there are lines, so 2 is subtracted.
         (count - 2).max(1)
     }
 
-    /// Calls `visit` with each strip of the polygon between two neighbouring lines of a family, and
-    /// with the number of the first of the lines.
+    /// Divides the polygon into strips along the board's grid lines on which the coordinate with
+    /// the index `family` is an integer. Calls `visit` with each strip and with the integer of its
+    /// first line.
     fn strips(&self, family: usize, polygon: Vec<Point>, visit: &mut dyn FnMut(&IBig, Vec<Point>)) {
         let across = &self.across[family];
         let square = |p: &Point| {
@@ -92,7 +99,7 @@ impl ExactBoard {
     }
 }
 
-/// Converts a point.
+/// Converts a point of the picture to 256-bit numbers.
 pub fn point(at: DVec2) -> Point {
     [at.x, at.y].map(|x| NUMBER.exact(x))
 }

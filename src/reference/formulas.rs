@@ -1,11 +1,10 @@
 //! The usual textbook formulas in `f64`: a camera's axes, a triangle's vertices, and the
 //! intersection of a ray with a shape.
 //!
-//! The camera's axes are normalised first. The sphere's formula uses the discriminant b² − 4ac; the
-//! box's, three slabs with reciprocals (Kay and Kajiya 1986); and the triangle's is that of Möller
-//! and Trumbore (1997). All formulas are correct in exact arithmetic. The tracer uses none of them.
-//! `report` compares the tracer's decisions with theirs, and `grading` uses them to imitate
-//! students' programs.
+//! A sphere is intersected by the quadratic formula, with the discriminant b² − 4ac. A box is
+//! intersected as three slabs (Kay and Kajiya 1986), and a triangle by the method of Möller and
+//! Trumbore (1997). All formulas are correct in exact arithmetic, but the tracer uses none of them.
+//! `report` compares the tracer with them, and `grading` uses them to imitate students' programs.
 
 use glam::{BVec3, DVec2, DVec3};
 
@@ -87,8 +86,8 @@ pub fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
     })
 }
 
-/// Returns the shape. A triangle that is given in another way is described by its vertices, so that
-/// they are not computed again for each ray.
+/// Replaces a triangle that is given by its sides by the same triangle, given by its vertices. So
+/// the vertices are not computed again for each ray. Returns other shapes unchanged.
 pub fn by_vertices(shape: Shape) -> Shape {
     match shape {
         Shape::Triangle(Triangle { outline, color }) => Shape::Triangle(Triangle {
@@ -156,7 +155,8 @@ fn cuboid(cuboid: &Cuboid, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
 }
 
 /// Intersects the line `eye` + t·`d` with a triangle, by barycentric coordinates from Cramer's
-/// rule. Returns t twice, or `None` if the line misses the triangle or counts as parallel to it.
+/// rule. Returns the same t as entry and as exit. Returns `None` if the line misses the triangle or
+/// is nearly parallel to it.
 fn triangle([a, b, c]: &[DVec3; 3], eye: DVec3, d: DVec3, epsilon: f64) -> Option<[f64; 2]> {
     let (one, other) = (b - a, c - a);
     let p = d.cross(other);

@@ -37,9 +37,9 @@ pub struct TextbookHit {
     pub point: DVec3,
 }
 
-/// Minimum absolute value of the determinant in the triangle test of Möller and Trumbore. Below it,
-/// the triangle counts as parallel to the ray and is missed. The authors' own program uses 10⁻⁶;
-/// most later programs use 10⁻⁸.
+/// Minimum absolute value of the determinant in the triangle test of Möller and Trumbore. If it is
+/// smaller, the triangle is treated as parallel to the ray, so the ray misses it. The authors' own
+/// program uses 10⁻⁶; most later programs use 10⁻⁸.
 const EPSILON: f64 = 1e-8;
 
 impl Textbook {

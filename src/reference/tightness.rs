@@ -1,30 +1,31 @@
-//! The law of error bounds: no error exceeds its bound, and no bound says little about its errors.
+//! Checks error bounds: no error may exceed its bound, and no bound may be needlessly large.
 //!
-//! A bound adds up the errors of a computation as if each were the greatest possible, and all had
-//! one direction. If it has n independent roundings, a typical error is smaller by √n, and by the
-//! ratio of a rounding to the greatest one. The law therefore looks at the greatest error of many
-//! computations, multiplied by √n: it must be more than a hundredth of the bound.
+//! A bound adds up the rounding errors of a computation as if each had its greatest possible size
+//! and all had the same sign. With n independent roundings, the actual error is typically smaller
+//! by a factor of √n. So the greatest error of many computations is multiplied by √n. The product
+//! must be at least a hundredth of the bound.
 
 use std::fmt::Debug;
 
-/// Number by which a bound may at most exceed the greatest error of many computations.
+/// Maximum ratio of an error bound to the greatest error of many computations, after the error is
+/// multiplied by √n for n roundings. Typical errors are smaller than the greatest possible one, so
+/// the ratio cannot be close to 1.
 const MOST: f64 = 100.0;
 
-/// Minimum number of errors of one mechanism that are looked at.
+/// Minimum number of errors on which a check of an error bound is based.
 const FEWEST: usize = 8;
 
-/// Errors of values that one mechanism has computed.
+/// Errors of many computed values, to check that their error bounds are not needlessly large.
 #[derive(Debug, Default)]
 pub struct Tightness {
     count: usize,
-    /// Greatest quotient of an error, multiplied by the root of the number of roundings, and its
-    /// bound.
+    /// Greatest value of error·√n/bound, where n is the number of roundings in the computation.
     greatest: f64,
 }
 
 impl Tightness {
-    /// Adds the error of a value whose bound has `roundings` parts. Panics if the error exceeds the
-    /// bound.
+    /// Adds the error of a value that is computed with `roundings` roundings. Panics if the error
+    /// exceeds the bound.
     #[track_caller]
     pub fn add(&mut self, error: f64, bound: f64, roundings: usize, what: impl Debug) {
         assert!(error <= bound, "{error:e} > {bound:e}: {what:?}");
@@ -33,7 +34,8 @@ impl Tightness {
         self.greatest = self.greatest.max(error / typical);
     }
 
-    /// Panics if the mechanism was hardly used, or if all errors are far below their bounds.
+    /// Panics if too few errors were added, or if all of them are far below their bounds.
+    /// `mechanism` names the computation in the message.
     #[track_caller]
     pub fn assert(&self, mechanism: &str) {
         assert!(self.count >= FEWEST, "{mechanism}: {} values", self.count);

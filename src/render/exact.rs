@@ -1,7 +1,7 @@
 //! Computes a part of the picture exactly, i.e. without samples, with error bounds.
 //!
-//! In: the prepared scene and the part of its picture. Out: the pixels' means as [`Integrator`]
-//! computes them, and their error bounds, rounded upwards.
+//! In: the prepared scene and the part of its picture. Out: the colours of the pixels, which
+//! [`Integrator`] computes, and their error bounds, rounded upwards.
 
 use std::sync::Mutex;
 
@@ -25,12 +25,13 @@ const TILE: u32 = 2 * GRID;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Exact<P = [f64; 3]> {
-    /// The pixels' means in linear light, or converted to another type of pixel.
+    /// Colours of the pixels, in linear light or converted to another type of pixel.
     pub film: Film<P>,
-    /// Error bound of each pixel's mean, row by row. It holds for every channel.
+    /// Error bound of each pixel's colour, in linear light, row by row. A bound is valid for every
+    /// channel.
     pub bounds: Vec<f32>,
-    /// Number of pixels for which it is certain that the value in a file is the true mean,
-    /// correctly rounded.
+    /// Number of pixels whose stored value is certain, i.e. would be the same for every colour
+    /// within the error bound.
     pub certain: u64,
 }
 
@@ -69,9 +70,9 @@ pub(super) fn render_exact_as<P: film::Pixel>(
     render_numbers(&Integrator::new(world), part, control, &|_, _| ())
 }
 
-/// Computes a part of the picture with an integrator that averages `N` numbers per colour. The
-/// first three numbers are the colour's channels. Calls `also` with each finished tile, and with
-/// all numbers of its pixels.
+/// Computes a part of the picture with an integrator that assigns `N` numbers to each colour and
+/// computes their means in every pixel. The first three numbers are the colour's channels. Calls
+/// `also` with each finished tile (a square of pixels), and with all numbers of its pixels.
 ///
 /// # Errors
 ///
@@ -106,7 +107,7 @@ pub fn render_numbers<P: film::Pixel, const N: usize>(
                     bound => (bound as f32).next_up().min(1.0),
                 })
                 .collect();
-            // Most pixels have the same mean as the pixel before, so the last conversion is used
+            // Most pixels have the same colour as the pixel before, so the last conversion is used
             // again.
             let (mut before, mut last) = ([0.0; 3], P::of([0.0; 3], &encoder));
             let means: Vec<P> = pixels

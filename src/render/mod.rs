@@ -1,13 +1,14 @@
 //! Renders a prepared scene (a `World`) to a film, with samples or exactly.
 //!
 //! In: the prepared scene, the positions of the samples, and the wanted part of the picture. Out:
-//! the means of the part's pixels. The part is divided into tiles, which the threads take in turn.
-//! A pixel is the same, to the last bit, whatever the number of threads, the tiles and the part
-//! are.
+//! the colours of the part's pixels. The part is divided into tiles (squares), and each thread
+//! renders one tile after another. The bits of a pixel do not depend on the number of threads, on
+//! the tiles, or on the part.
 //!
-//! `sampled` renders with samples, and lets `renderer` render each tile. `exact` renders without
-//! samples. `slices` renders in either way, a piece of the picture at a time. This file chooses the
-//! way by the scene's sampler, and has the code that both ways share.
+//! `sampled` renders with samples, and calls `renderer` for each tile. `exact` renders without
+//! samples. `slices` renders one square of the picture at a time, with samples or exactly. This
+//! file calls `sampled` or `exact`, according to the scene's sampler, and contains the code that
+//! they share.
 
 mod exact;
 mod renderer;
@@ -47,8 +48,8 @@ pub use self::{
 /// Control of a render: its threads, its progress, and its cancellation.
 #[derive(Clone, Copy)]
 pub struct Control<'a> {
-    /// Number of threads; `None` for the default number, which is one per processor or the
-    /// process's limit.
+    /// Number of threads. `None` stands for the process's limit or, if there is no limit, for one
+    /// thread per processor.
     pub threads: Option<NonZero<usize>>,
     /// Function that is called with the number of samples (or of exact pixels) that were finished
     /// since its last call. Any thread may call it.
@@ -134,7 +135,8 @@ impl<P> Rendered<P> {
     }
 }
 
-/// Renders a part of the picture as its sampler specifies, and returns the means in linear light.
+/// Renders a part of the picture, with samples or exactly, as `sampling` specifies. Returns the
+/// colours in linear light.
 ///
 /// # Errors
 ///
@@ -153,9 +155,8 @@ pub fn render(
     render_as_asked(world, sampling, part, control).map(Rendered::into_film)
 }
 
-/// Renders a part of the picture as its sampler specifies, with samples or exactly. The film stores
-/// linear light, or the sRGB bytes that a PNG file needs. Bytes take less memory and give the same
-/// file.
+/// Renders a part of the picture, with samples or exactly, as `sampling` specifies. The film stores
+/// linear light, or bytes of sRGB. Bytes need less memory, and suffice for a PNG file.
 ///
 /// # Errors
 ///
@@ -191,9 +192,9 @@ pub(crate) fn check_part(part: Area, whole: Area) -> Result<(), RenderError> {
 }
 
 /// Iterates over the squares (tiles) into which a part of the picture is divided, clipped to the
-/// part. They have the side `side`, in pixels, and form a grid from the picture's top left corner.
-/// The iterator ends early if the render is cancelled, because merely iterating over millions of
-/// tiles would take a second.
+/// part. The squares have sides of `side` pixels, and form a grid from the picture's top left
+/// corner. The iterator ends early if the render is cancelled, because merely iterating over
+/// millions of tiles would take a second.
 fn tiles(part: Area, side: u32, control: &Control) -> impl Iterator<Item = Area> + Send {
     let tiles = part.grid(side).map(move |tile| tile.common(part));
     tiles.take_while(|_| !control.cancel.load(Ordering::Relaxed))

@@ -1,9 +1,9 @@
 //! Renders tiles (rectangles of pixels) of a picture with samples.
 //!
-//! A pixel's samples are counted by colour, so their order does not matter. Where all samples are
-//! certain to see one colour, they are neither placed nor traced. In other pixels, many samples are
-//! traced at a time, against only those objects that may be seen there. If finding these objects
-//! would take longer than it saves, samples are traced one by one.
+//! A pixel's samples are counted by colour, so their order does not matter. If all samples of a
+//! pixel are certain to see the same colour, they are neither placed nor traced. In other pixels,
+//! many samples are traced at a time, against only those objects that may be seen there. If finding
+//! these objects would take longer than it saves, samples are traced one by one.
 
 use std::{
     ops::{ControlFlow, Range},
@@ -31,10 +31,10 @@ use crate::{
 /// narrower vectors that every processor has.
 const WIDE_SAMPLES: u64 = 8;
 
-/// Maximum number of samples per candidate (an object that may be seen in the pixel) for which
-/// samples are traced one by one. With more, the pixel is prepared so that many samples can be
-/// traced at a time. The value is not critical: by measurement, a picture takes up to 2 % longer
-/// with 1 or 4.
+/// Limit on the ratio of a pixel's samples to the objects that may be seen in the pixel. Up to this
+/// ratio, samples are traced one by one. Above it, the pixel is first prepared, so that many
+/// samples can be traced at a time. The value is not critical: by measurement, a picture takes up
+/// to 2 % longer with 1 or 4.
 const SAMPLES_A_CANDIDATE: u64 = 2;
 
 /// Maximum number of a pixel's samples that are traced between two checks for cancellation. 4096
@@ -42,15 +42,15 @@ const SAMPLES_A_CANDIDATE: u64 = 2;
 /// quick.
 const SAMPLES_A_CHUNK: u64 = 1 << 12;
 
-/// Side of the squares, in pixels, for which the nearby objects are searched once for all their
-/// samples. Such squares divide areas in which too many objects may be seen to prepare each pixel.
-/// Smaller squares would need more searches; larger ones would have more objects nearby, which each
-/// sample has to test.
+/// Side, in pixels, of the squares into which crowded areas are divided. An area is crowded if so
+/// many objects may be seen in it that pixels are not prepared one by one. For each square, nearby
+/// objects are searched once for all samples. Smaller squares would need more searches. In larger
+/// squares, each sample would have to test more objects.
 const CROWD_SIDE: u32 = 4;
 
 /// Minimum number of a pixel's samples for which the list of objects near a square of pixels is
 /// reduced to the objects near the pixel. With fewer samples, reducing the list would take longer
-/// than testing each sample against all of it.
+/// than testing each sample against the whole list.
 const SAMPLES_WORTH_A_LOOK: u64 = 3;
 
 /// Renders the tiles (rectangles of pixels) of a picture. All threads share this data.
@@ -117,8 +117,8 @@ impl<P: film::Pixel> Renderer<'_, P> {
         ControlFlow::Continue(())
     }
 
-    /// Traces the samples of a pixel and stores their mean in `film`. Returns `Break` if the render
-    /// was cancelled.
+    /// Traces the samples of a pixel and stores their mean colour in `film`. Returns `Break` if the
+    /// render was cancelled.
     fn pixel(
         &self,
         [x, y]: [u32; 2],
@@ -172,8 +172,8 @@ impl<P: film::Pixel> Renderer<'_, P> {
         self.go_on()
     }
 
-    /// Traces some of a pixel's samples, and counts their colours in `tally`. `some` has the
-    /// indices of these samples, and `samples` is the number of all samples in the pixel.
+    /// Traces some of a pixel's samples, and counts their colours in `tally`. `some` is the range
+    /// of these samples' indices, and `samples` is the number of all samples in the pixel.
     fn chunk(
         &self,
         [x, y]: [u32; 2],
@@ -221,11 +221,12 @@ impl<P: film::Pixel> Renderer<'_, P> {
     }
 }
 
-/// How the samples of a pixel are traced.
+/// Method of tracing the samples of a pixel.
 #[derive(Clone, Copy)]
 enum Trace<'a> {
     /// Many samples at a time, against the objects that may be seen in the pixel. The second value
-    /// describes the squares of a checkerboard, if the pixel shows nothing else and they are known.
+    /// describes a checkerboard's squares in the pixel. It is `None` if other objects may be seen
+    /// too, or if the squares are not known.
     Batched(&'a [VisibilityCandidate], Option<&'a CheckerPixel>),
     /// One sample at a time, against the objects that may be seen in the pixel.
     AmongCandidates(&'a [VisibilityCandidate]),

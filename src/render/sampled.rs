@@ -1,8 +1,8 @@
 //! Renders a part of the picture with samples.
 //!
-//! In: the prepared scene, the positions of the samples, and the part. Out: the means of the part's
-//! pixels, as light or as bytes. The part is divided into tiles for the threads, and `renderer`
-//! renders each tile.
+//! In: the prepared scene, the positions of the samples, and the part. Out: the colours of the
+//! part's pixels, in linear light or as bytes of sRGB. The part is divided into tiles (squares),
+//! which several threads render. `renderer` renders each tile.
 
 use std::sync::Mutex;
 
@@ -18,12 +18,12 @@ use crate::{
     tracer::{GRID, Quartering, Scratch, World},
 };
 
-/// Approximate number of samples in a tile, which is what a thread renders at a time. They take a
-/// few milliseconds, so at the end no thread waits long for the others. With much smaller tiles,
-/// handing them out would take more time.
+/// Approximate number of samples in a tile, i.e. in a square that one thread renders at a time.
+/// Tracing a tile takes a few milliseconds, so all threads end at about the same time. Much smaller
+/// tiles would cause more overhead.
 const TILE_SAMPLES: u64 = 1 << 18;
 
-/// Renders a part of the picture with samples. The sampler must not be the exact one.
+/// Renders a part of the picture with samples. `sampling` must not specify the exact sampler.
 pub(super) fn render_as<P: film::Pixel>(
     world: &World,
     sampling: &Sampling,
@@ -65,9 +65,9 @@ pub(super) fn render_as<P: film::Pixel>(
 /// power of two, and it is smaller the more samples a pixel has.
 fn tile_side(sampling: &Sampling) -> u32 {
     let pixels = TILE_SAMPLES / sampling.samples_per_pixel().max(1);
-    // The quotient is at most 2^18, so its root fits into 32 bits. The side is a power of two up to
-    // `GRID`, the side of the squares that the tracer divides first. So no tile crosses a border of
-    // these squares.
+    // The quotient is at most 2^18, so its root fits into 32 bits. The tracer first divides the
+    // picture into squares of the side `GRID`, a power of two. The side of a tile is a power of two
+    // up to `GRID`, so no tile crosses a border of these squares.
     let side = (pixels.isqrt() as u32).clamp(1, GRID);
     1 << side.ilog2()
 }

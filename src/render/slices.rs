@@ -1,8 +1,8 @@
-//! Renders a picture in slices, so that the caller can do something else in between.
+//! Renders a picture in slices, so that the caller can react to events between two slices.
 //!
 //! A slice is a square of the picture, clipped at the picture's edges. All slices have about the
-//! same number of samples. A pixel's mean does not depend on its slice. Slices are limited by
-//! samples instead of time, because Rust has no clock in a web worker.
+//! same number of samples. The colour of a pixel does not depend on its slice. The limit of a slice
+//! is a number of samples instead of a time, because Rust has no clock in a web worker.
 
 use super::{Control, RenderError, render_as_asked};
 use crate::{
@@ -12,16 +12,16 @@ use crate::{
     tracer::World,
 };
 
-/// Maximum number of samples in a slice, i.e. a square of the picture that is rendered at a time.
-/// They take about 10 ms on two processors if there are few objects. A pixel with more samples is a
-/// slice by itself, because pixels are not divided.
+/// Maximum number of samples in a slice, i.e. a square of the picture that is rendered at a time. A
+/// slice takes about 10 ms on two processors if there are few objects. A pixel with more samples is
+/// a slice by itself, because pixels are not divided.
 pub const SLICE: u64 = 1 << 20;
 
 /// Number of samples that take as long as one exactly computed pixel. Measured on figure 9.9, the
 /// picture of the assignment.
 const EXACT_PIXEL_WORK: u64 = 64;
 
-/// A picture of which some slices, i.e. squares, are rendered.
+/// A partly rendered picture. It is rendered slice by slice, i.e. square by square.
 #[derive(Debug)]
 pub struct Slices<P> {
     sampling: Sampling,
@@ -40,8 +40,9 @@ impl<P: Pixel> Slices<P> {
     ///
     /// Fails if there is not enough memory for the picture.
     pub fn new(sampling: Sampling, [width, height]: [u32; 2]) -> Result<Self, TooLarge> {
-        // The side of a slice is a power of two, like the side of the squares that the tracer
-        // divides first. So a slice consists of whole squares, or lies within one of them.
+        // The tracer first divides the picture into squares whose side is a power of two. The side
+        // of a slice is also a power of two, so a slice consists of whole squares, or lies within
+        // one of them.
         let pixels = (SLICE / pixel_work(&sampling)).max(1);
         Ok(Self {
             film: Film::new(width, height)?,
@@ -91,8 +92,8 @@ impl<P: Pixel> Slices<P> {
     }
 }
 
-/// Returns the work of rendering one pixel, as the number of samples that take as long. It is at
-/// least 1.
+/// Returns the work of rendering one pixel, in samples: the number of samples in the pixel or, if
+/// the pixel is computed exactly, a number that takes equally long. The result is at least 1.
 pub fn pixel_work(sampling: &Sampling) -> u64 {
     if sampling.is_exact() {
         return EXACT_PIXEL_WORK;

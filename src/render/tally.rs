@@ -1,5 +1,5 @@
-//! Counts how often each colour was seen in a pixel, and computes the pixel's mean from these
-//! counts.
+//! Counts how often each colour was seen in a pixel, and computes the pixel's mean colour from
+//! these counts.
 
 use crate::{
     film::{self, Encoder, mean},
@@ -69,18 +69,18 @@ impl Counts {
     }
 }
 
-/// A cache of means of two colours. Most pixels that show more than one colour show two, and mostly
-/// an earlier pixel had the same counts of them. An entry is found by a hash of the two colours'
-/// palette slots (indices) and counts.
+/// A cache of mean colours of pixels that show two colours. Most pixels that show more than one
+/// colour show two, and an earlier pixel usually had the same counts of these two. An entry is
+/// found by a hash of the two colours' palette slots (indices) and counts.
 pub(super) struct Means<P>(Vec<([(usize, u64); 2], P)>);
 
-/// Number of means of two colours that are cached. They take 28 KiB, so they fit into the
-/// first-level cache of a processor.
+/// Number of entries of the cache of mean colours. The cache has at most 28 KiB, so it fits into
+/// the first-level cache of a processor. With fewer entries, more means would be computed again.
 const CACHED_MEANS: usize = 512;
 
 impl<P: film::Pixel> Means<P> {
-    /// Returns the mean of a pixel's samples, from the counts of their colours, as a pixel of the
-    /// film. Resets the counts to 0.
+    /// Returns the mean colour of a pixel's samples, from the counts of their colours, as a pixel
+    /// of the film. Resets the counts to 0.
     pub(super) fn take(
         &mut self,
         counts: &mut Counts,

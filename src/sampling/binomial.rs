@@ -1,12 +1,12 @@
 //! Binomial random numbers: the number of successes in n trials, each with a probability p that is
 //! a fraction.
 //!
-//! A trial succeeds if a random number is below p. The first binary digit in which the two numbers
-//! differ decides this. Each digit decides about half of the trials that are still undecided, and
-//! only the number of decided trials has to be drawn. It is the number of heads of fair coins, one
-//! coin for each undecided trial. For few coins, random bits are counted. For many, the number is
-//! drawn by transformed rejection (BTRS of Hörmann 1993, "The generation of binomial random
-//! variates"), exact except for the rounding of `f64`.
+//! A trial draws a random number and succeeds if it is below p. The first binary digit in which the
+//! random number differs from p decides whether it is below. Each digit decides about half of the
+//! trials that are still undecided, and only the number of decided trials has to be drawn. This
+//! number is the number of heads of fair coins, one coin for each undecided trial. For few coins,
+//! random bits are counted. For many, the number is drawn by transformed rejection (BTRS of Hörmann
+//! 1993, "The generation of binomial random variates"), exact except for the rounding of `f64`.
 //!
 //! The binomial distribution of `rand_distr` is not used: it calls the platform's `powf` and `ln`,
 //! whose last bits differ between systems.
@@ -52,7 +52,7 @@ fn heads(rng: &mut impl Rng, n: u64) -> u64 {
 }
 
 /// Draws the number of heads of `n` fair coins by transformed rejection (the method BTRS of Hörmann
-/// 1993). `n` must be large.
+/// 1993). `n` must be more than about [`MAX_COUNTED`], because Stirling's formula is used.
 fn reject(rng: &mut impl Rng, n: f64) -> f64 {
     let deviation = n.sqrt() / 2.0;
     let b = 1.15 + 2.53 * deviation;

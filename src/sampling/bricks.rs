@@ -1,10 +1,10 @@
 //! Divides a pixel into n cells of equal area, for every n: rows of cells, like bricks.
 //!
-//! The cells of row k number n_k. Each has the width 1/n_k and the height n_k/n, so that its area
-//! is 1/n. The number m of rows is the whole number nearest to √n, or the nearest odd one if n is
-//! odd, because an odd n cannot be divided symmetrically into an even number of rows. n_k is ⌊n/m⌋
-//! or ⌈n/m⌉. The longer rows are spread evenly, and the row lengths are symmetric about the middle:
-//! 16 = 4 + 4 + 4 + 4, 7 = 2 + 3 + 2, 14 = 3 + 4 + 4 + 3.
+//! Row k has n_k cells. Each has the width 1/n_k and the height n_k/n, so that its area is 1/n. The
+//! number m of rows is the whole number nearest to √n, or the nearest odd one if n is odd, because
+//! an odd n cannot be divided symmetrically into an even number of rows. n_k is ⌊n/m⌋ or ⌈n/m⌉. The
+//! longer rows are spread evenly, and the row lengths are symmetric about the middle: 16 = 4 + 4 +
+//! 4 + 4, 7 = 2 + 3 + 2, 14 = 3 + 4 + 4 + 3.
 
 use std::ops::Range;
 
@@ -91,7 +91,8 @@ impl Bricks {
     /// Returns the index of the row that contains the cell with the index `i`. Cells are counted
     /// row by row.
     fn row_of_cell(&self, i: u64) -> u64 {
-        // The estimate may be wrong by about one row, and is corrected.
+        // The first value of `k` is an estimate that may be wrong by about one row. The loops
+        // correct it.
         let mut k = (u128::from(i) * u128::from(self.rows) / u128::from(self.n)) as u64;
         while self.cells_above(k) > i {
             k -= 1;
@@ -108,7 +109,8 @@ impl Bricks {
             return self.n - self.cells_above(self.rows - k);
         }
         let half = self.rows / 2;
-        // There are fewer than 2^27 rows, so that nothing overflows. If there is one row, `k` is 0.
+        // There are fewer than 2^27 rows, so that nothing overflows. If there is only one row,
+        // `half` is 0; the divisor is then 1, which does not matter because `k` is 0.
         k * self.short + k * self.longer / half.max(1)
     }
 }

@@ -56,8 +56,8 @@ impl Hammersley {
         }
         let least = self.columns.least();
         let place = scale(within, least);
-        // A column has `least` or `least` + 1 possible places. `more` is what has to be added to
-        // `place` in a column with `least` + 1 places: 0 or 1.
+        // A column has `least` or `least` + 1 possible places. `more`, 0 or 1, is added to `place`
+        // only in a column with `least` + 1 places.
         let more = scale(within, least + 1) - place;
         let turned = &self.turned[(columns + range.start) as usize..];
         for (x, column) in x.iter_mut().zip(turned) {

@@ -9,7 +9,8 @@ use super::{
     rng::{Key, scale},
 };
 
-/// Cells of equal area in a pixel, and the equal intervals into which its sides are divided.
+/// Cells of equal area in a pixel, and the divisions of the pixel's width and height from which the
+/// cells are made.
 #[derive(Debug)]
 pub struct Jittered {
     bricks: Bricks,

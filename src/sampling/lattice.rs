@@ -27,7 +27,8 @@ pub fn offset(place: u64) -> f64 {
     // Let `place` be 2i + b, where b is 0 or 1. The offset, (2·`place` + 1)/2^54 − 1/2, is then the
     // sum of i/2^52 − 1/2 and of 2b + 1 units of 2^−54. The first summand is computed as a
     // difference of numbers between 1 and 2. All operations are exact, and every processor has
-    // vector instructions for them. Few can convert vectors of integers to `f64`.
+    // vector instructions for them. A conversion of `place` to `f64` would be slower, because few
+    // processors can convert vectors of integers.
     let even = f64::from_bits(ONE | place >> 1) - 1.5;
     let odd = (place & 1).wrapping_neg();
     even + f64::from_bits(FIRST ^ (odd & (FIRST ^ SECOND)))
@@ -47,7 +48,8 @@ pub struct Strata {
     n: u64,
     /// Minimum number of possible places in a stratum, ⌊2^53/n⌋; some strata have one more.
     least: u64,
-    /// All strata, followed by the stratum that would come next. Empty if n exceeds [`MAX_STORED`].
+    /// All n strata, and at the index n the stratum that would follow the last. Empty if n exceeds
+    /// [`MAX_STORED`].
     stored: Vec<Stratum>,
 }
 
@@ -80,7 +82,7 @@ impl Stratum {
 }
 
 impl Strata {
-    /// Divides the 2^53 places into `n` strata, 1 ≤ n ≤ 2^53.
+    /// Divides the 2^53 possible offsets along a pixel's side into `n` strata, 1 ≤ n ≤ 2^53.
     pub fn new(n: u64) -> Self {
         let stored = (0..=n).take_while(|_| n <= MAX_STORED);
         Self {

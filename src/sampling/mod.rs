@@ -1,10 +1,10 @@
 //! The positions of a picture's samples.
 //!
 //! In: the scene's [`Sampler`] and the picture's size. Out: how many samples each pixel has, and
-//! where in the pixel they lie. A sample is a pure function of the method, the seed, the pixel, its
-//! index and number of samples, and the picture's size. No random generator has a state that
-//! depends on earlier requests. Any part of a picture can therefore be rendered in any order, on
-//! any number of threads, with the same result.
+//! where in the pixel they lie. A sample is a pure function of the method, the seed, the picture's
+//! size, the pixel, the pixel's number of samples, and the sample's index. No random generator has
+//! a state that depends on earlier requests. Any part of a picture can therefore be rendered in any
+//! order, on any number of threads, with the same result.
 //!
 //! A sample's position is an offset from the middle of its pixel, x to the right and y down, in
 //! [−1/2, 1/2). Each method has a file:
@@ -179,7 +179,7 @@ impl Sampling {
 
     /// Computes the positions of some of a pixel's samples, as offsets from the pixel's middle, and
     /// replaces the content of `out` by them. `count` must be the pixel's [`count`](Self::count).
-    /// `range` has the samples' indices, and must not exceed `count`.
+    /// `range` contains the samples' indices, and must not exceed `count`.
     ///
     /// Each call first prepares data that all points of the pixel share. A caller should therefore
     /// request a few thousand points at once, not single ones.

@@ -110,8 +110,8 @@ impl MultiJittered {
                     (i, j) = (0, j + 1);
                 }
             }
-            // Then a random place is chosen in each column and row, in loops that the compiler can
-            // vectorize.
+            // After the columns and rows of the points are known, a random place is chosen in each
+            // column and row, in loops that the compiler can vectorize.
             for (axis, (out, chosen)) in [(0, (x, &chosen[0])), (1, (y, &chosen[1]))] {
                 for (point, (out, stratum)) in (0..).zip(out.iter_mut().zip(chosen)) {
                     *out = stratum.choose(least, key.bits(index + axis + 2 * point));

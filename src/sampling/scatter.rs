@@ -1,9 +1,10 @@
 //! `scatter`: points that are uniform over the whole picture, computed for each pixel alone.
 //!
 //! If n points are uniform in a rectangle, the number of points in one half is binomial. Given this
-//! number, the two halves are independent. So the number N of all points is divided down a fixed
-//! binary tree of rectangles of pixels, with one binomial draw per node. This gives the numbers of
-//! points in all pixels their multinomial distribution.
+//! number, the two halves are independent. The picture is therefore divided into a fixed binary
+//! tree of rectangles of pixels. At each node, one binomial draw divides the number of points
+//! between the two children. This gives the numbers of points in all pixels their multinomial
+//! distribution.
 //!
 //! The longer side of a rectangle is cut (the width, if both are equal), at the greatest power of
 //! two below its length. Nearly all cuts are therefore into equal halves, for which a draw only

@@ -8,9 +8,9 @@ use super::rng::Key;
 /// which does not choose all permutations with equal probability.
 const MAX_STORED: u64 = 1 << 12;
 
-/// Maximum length of a permutation that is stored in a [`Buffer`] instead of allocated memory. A
-/// smaller one would allocate memory more often. A larger one would take longer to clear for every
-/// pixel.
+/// Maximum length of a permutation that is stored in a [`Buffer`] instead of allocated memory. With
+/// a smaller maximum, memory would be allocated more often. A larger buffer would take longer to
+/// clear for every pixel.
 const SHORT: usize = 64;
 
 /// Memory for the entries of a short permutation. A [`Shuffle`] borrows it instead of owning it,
@@ -128,7 +128,7 @@ mod tests {
         }
         assert_eq!(hits.len(), 24);
         // Each permutation is expected 24,000/24 = 1000 times, with a standard deviation of √1000 =
-        // 32.
+        // 32, so a difference of 150 is very unlikely.
         assert!(hits.values().all(|&n| n.abs_diff(1000) < 150), "{hits:?}");
     }
 
@@ -143,7 +143,8 @@ mod tests {
             neighbours += u32::from(shuffle.get(17).abs_diff(shuffle.get(18)) == 1);
         }
         // The mean of the 2000 entries is expected to be 3003, with a standard deviation of
-        // 6007/√12/√2000 = 39. Two successive entries are neighbouring numbers once in 3000 cases.
+        // 6007/√12/√2000 = 39, so a difference of 160 is very unlikely. Two successive entries are
+        // neighbouring numbers once in 3000 cases.
         assert!((sum / 2000.0 - 3003.0).abs() < 160.0, "{}", sum / 2000.0);
         assert!(neighbours < 8, "{neighbours}");
     }

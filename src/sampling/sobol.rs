@@ -32,8 +32,8 @@ const MAX_STORED: u64 = 1 << (2 * LEVELS);
 /// The first points of the Sobol' sequence, prepared for scrambling.
 #[derive(Clone, Debug)]
 pub struct Sobol {
-    /// Number of leading bits in which all points differ: the least m for which there are at most
-    /// 2^m points.
+    /// Number of leading bits that distinguish all points: the least m for which there are at most
+    /// 2^m points. No two points agree in all m leading bits of a coordinate.
     depth: u32,
     /// The `depth` highest bits of both coordinates of each point, before the scrambling. Empty for
     /// more than 4096 points.
@@ -79,9 +79,9 @@ impl Sobol {
     }
 }
 
-/// Writes the offsets of points to `x` and `y`. `tops` has the highest bits of the points'
-/// coordinates, which have at most `MOST` different values. The offset for each value is computed
-/// once and then looked up.
+/// Writes the offsets of points to `x` and `y`. `tops` contains the highest bits of each point's
+/// two coordinates. A coordinate has at most `MOST` different values of these bits. The offset for
+/// each value is computed once and then looked up.
 #[inline(always)]
 fn at_leaves<const MOST: usize>(axes: &[Owen; 2], tops: &[[u16; 2]], [x, y]: [&mut [f64]; 2]) {
     let leaves = [axes[0].leaves::<MOST>(), axes[1].leaves::<MOST>()];
@@ -93,8 +93,8 @@ fn at_leaves<const MOST: usize>(axes: &[Owen; 2], tops: &[[u16; 2]], [x, y]: [&m
 
 /// Multiplies the bits of a number by Pascal's triangle modulo 2: bit j of the result is the sum,
 /// over all k, of the binomial coefficient (k over j) times bit k, modulo 2. The coefficient is odd
-/// if all bits of j are also set in k, so one step for each of the six bits of a bit's position is
-/// enough.
+/// if all bits of j are also set in k. The positions j and k, from 0 to 63, have six bits, so six
+/// steps are enough: one for each of these bits.
 fn pascal(mut bits: u64) -> u64 {
     bits ^= (bits >> 1) & 0x5555_5555_5555_5555;
     bits ^= (bits >> 2) & 0x3333_3333_3333_3333;
@@ -177,7 +177,8 @@ impl Owen {
             flips = self.key.bits(node);
             above = below;
         }
-        // No other point has these highest bits, so the last hash gives all remaining bits.
+        // No other point agrees with this one in the `depth` highest bits, so the last hash gives
+        // all remaining bits.
         scrambled << (u64::BITS - self.depth) | flips >> self.depth
     }
 }

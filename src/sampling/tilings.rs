@@ -1,8 +1,9 @@
-//! Divisions of a pixel into n cells, in each of which a sampling method guarantees one sample.
+//! Divisions of a pixel into n cells such that a sampling method guarantees one sample in each
+//! cell.
 //!
 //! In: a method and the number n of a pixel's samples. Out: the divisions that hold for every seed
-//! and every pixel. They follow from the methods' own files: `bricks` has the cells of regular and
-//! jittered samples, and `multi_jittered` its grid.
+//! and every pixel. They follow from the methods' own files: `bricks` defines the cells of regular
+//! and jittered samples, and `multi_jittered` its grid.
 
 use super::{bricks::Bricks, multi_jittered::MultiJittered};
 use crate::scene::Method;
@@ -35,7 +36,7 @@ impl Tiling {
 }
 
 /// Returns the divisions of a pixel with n ≥ 1 samples in which a method guarantees one sample per
-/// cell. The division into n columns and that into n rows come last.
+/// cell. If the division into n columns or the one into n rows is among them, it comes last.
 pub fn tilings(method: Method, n: u64) -> Vec<Tiling> {
     let (columns, rows) = ([n, 1], [1, n]);
     let is_power_of = |base: u64| {

@@ -1,7 +1,7 @@
 //! Writes a scene as a text, and checks a scene that was made or changed in code.
 //!
-//! The text has a block for each part of the scene, and states every field's value. A number has as
-//! many digits as identify it, so reading the text returns the same scene.
+//! The text has a block for each part of the scene, and states every field's value. Numbers are
+//! written with enough digits that reading the text returns exactly the same scene.
 
 use std::{collections::HashSet, fmt, sync::Arc};
 
@@ -128,8 +128,8 @@ fn write_camera(camera: &Camera, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     f.write_str("}\n")
 }
 
-/// Wrapper that formats a value in the language's notation, with all digits that reading it back
-/// needs.
+/// Wrapper that formats a value in the language's notation, with enough digits that reading the
+/// text returns exactly the same value.
 struct Exactly(Value);
 
 impl fmt::Display for Exactly {
@@ -165,8 +165,9 @@ impl fmt::Display for Exactly {
     }
 }
 
-/// Formats a number with the fewest digits that identify it. An exponent, as in `1e300`, is written
-/// if the plain notation has more than 12 characters and is longer.
+/// Formats a number with the fewest digits from which exactly the same number is read back. The
+/// exponent form, such as `1e300`, is used if it is shorter than the plain form and the plain form
+/// has more than 12 characters.
 fn digits(number: f64) -> String {
     let [plain, power] = [format!("{number}"), format!("{number:e}")];
     if plain.len() <= power.len().max(12) {

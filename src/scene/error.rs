@@ -27,8 +27,8 @@ pub fn warning(code: &str, message: impl Into<String>) -> Diagnostic {
     }
 }
 
-/// Returns the error for a duplicate, such as a second definition of a name. The two stand at the
-/// spans `first` and `second`.
+/// Returns the error for a duplicate, such as a second definition of a name. `first` and `second`
+/// are the spans of the two definitions.
 pub fn twice(code: &str, message: String, [first, second]: [Span; 2]) -> Diagnostic {
     error(code, message)
         .at(second, "and again here")
@@ -55,7 +55,8 @@ impl Diagnostic {
         self
     }
 
-    /// Adds one fix for each of `texts`. A fix replaces what stands at `span` by its text.
+    /// Adds one fix for each of `texts`. Each fix replaces the source text at `span` by one of
+    /// them.
     pub(super) fn writing<S: Into<String>>(
         self,
         span: Span,
@@ -76,8 +77,8 @@ impl Diagnostic {
         self.code.strip_prefix("pinhole::") == Some(code)
     }
 
-    /// Returns whether the diagnostic is about an undefined name, or a function without arguments.
-    /// Its help may suggest another name, or a call.
+    /// Returns whether the diagnostic is about an undefined name or about a function's name without
+    /// a call. The help of such a diagnostic may suggest another name, or a call.
     pub(super) fn is_of_suggestion(&self) -> bool {
         self.is_of_name() || self.is("function_without_arguments")
     }

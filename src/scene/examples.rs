@@ -1,4 +1,5 @@
-//! Finds an example value for a field that does not contradict the other fields of its block.
+//! Finds an example value for a field of a block. The example does not contradict the other fields
+//! of the block.
 //!
 //! The example in the schema may contradict them: a corner of a box may be on the wrong side of the
 //! other corner, or a camera may look at its own eye. In: the field, and the values of the other
@@ -16,7 +17,8 @@ use crate::{
 /// Returns an example for `field` that does not contradict the values of the other fields, which
 /// `given` returns by name. Returns the field's own example if no tried value fits.
 pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -> String {
-    // Names of the fields for points. An example may lie beside the value of such a field.
+    // Names of the fields that contain points. An example for another field may be a point near one
+    // of these points.
     const POINTS: [&str; 7] = [
         BOX.max.name,
         BOX.min.name,
@@ -27,7 +29,7 @@ pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -
         TRIANGLE.v2.name,
     ];
     const DIRECTIONS: [&str; 2] = [CAMERA.direction.name, CAMERA.up.name];
-    // Steps from a point to an example beside it, in the order in which they are tried.
+    // Steps from a given point to an example near it, in the order in which they are tried.
     const STEPS: [DVec3; 6] = [
         DVec3::NEG_Z,
         DVec3::X,

@@ -1,4 +1,4 @@
-//! Applies the first applicable fix of each error, and repeats that until the text no longer
+//! Applies the first applicable fix of each error. Repeats this step until the text no longer
 //! changes.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -18,15 +18,16 @@ pub struct Fixed {
     pub text: String,
     /// The fixes that were applied, in order.
     pub done: Vec<Done>,
-    /// Number of remaining errors that only unsafe fixes correct, if these were not allowed, and
-    /// otherwise 0. A fix is unsafe if it chooses among several meanings, or removes or changes
+    /// Number of remaining errors that only unsafe fixes would correct. It is 0 if unsafe fixes
+    /// were allowed. A fix is unsafe if it chooses among several meanings, or removes or changes
     /// something.
     pub held_back: usize,
-    /// Number of remaining errors whose fixes insert only a placeholder, i.e. a made-up value, and
-    /// so are never applied.
+    /// Number of remaining errors whose fixes insert only a placeholder, i.e. a made-up value.
+    /// Fixes with placeholders are never applied.
     pub placeholders: usize,
-    /// Number of remaining errors whose fixes were allowed but not applied: the maximum number of
-    /// rounds was reached, or the text contains bytes that are not UTF-8, which would be lost.
+    /// Number of remaining errors whose fixes were allowed but not applied. There are such errors
+    /// if the maximum number of rounds was reached, or if the text contains bytes that are not
+    /// UTF-8. A changed text would lose these bytes.
     pub waiting: usize,
 }
 
@@ -49,10 +50,10 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
     /// next round. The limit only makes sure that the function ends; texts are expected to need far
     /// fewer rounds. Errors that have a fix after the last round are counted as `waiting`.
     const ROUNDS: usize = 1000;
-    /// Maximum number of bytes that all rounds of fixes read together, 32 MiB. It bounds the time.
-    /// A text of 1 MiB gets at most 32 rounds, so a mistake in it that shows only after many other
-    /// fixes may remain. With a larger maximum, fewer mistakes would remain, but the time could be
-    /// longer.
+    /// Maximum number of bytes that all rounds of fixes parse in total, 32 MiB. The maximum limits
+    /// the time. A text of 1 MiB gets at most 32 rounds, so a mistake in it that shows only after
+    /// many other fixes may remain. With a larger maximum, fewer mistakes would remain, but the
+    /// time could be longer.
     const READ: usize = 1 << 25;
     let mut sources = sources.clone();
     let mut problems = read(&sources).diagnostics;
@@ -83,8 +84,8 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
         let idle = round.lengthened.values().filter(is_idle).flatten();
         let idle: Vec<Problem> = idle.cloned().collect();
         if !idle.is_empty() {
-            // These problems remain although their fixes were applied. Repeat the round without
-            // these fixes.
+            // The problems in `idle` remain although their fixes were applied. The round is
+            // repeated without these fixes.
             staying.extend(idle);
             continue;
         }

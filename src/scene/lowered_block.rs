@@ -30,7 +30,7 @@ pub struct LoweredBlock<'s> {
     pub unfinished: bool,
 }
 
-/// A field that a block has: where its name and value stand in the text, and its value.
+/// A field of a block: the spans of its name and its value, and the value.
 #[derive(Clone, Copy)]
 pub struct Given {
     /// Span of the field's name.
@@ -104,15 +104,16 @@ impl LoweredBlock<'_> {
         self.given(field).map_or(self.keyword, |given| given.span)
     }
 
-    /// Returns whether the block may still be given the field `row`: it has neither this field nor
-    /// one that excludes it.
+    /// Returns whether the field `row` can be added to the block: the block has neither this field
+    /// nor one that excludes it.
     pub fn has_place(&self, row: &FieldRow) -> bool {
         let is_given = |name: &str| self.given_by_name(name).is_some();
         !is_given(row.name) && !self.row.excludes(row.name).any(is_given)
     }
 }
 
-/// Default values of all fields, indexed by the kind of block and the field's position in its row.
+/// Default values of all fields, indexed by the kind of block and by the field's position in the
+/// schema's row for this kind.
 static DEFAULTS: LazyLock<Vec<Vec<Option<Value>>>> = LazyLock::new(|| {
     let default = |field: &FieldRow| match field.preset {
         Preset::Value(written) => literal(written, field.takes),

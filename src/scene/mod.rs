@@ -1,9 +1,9 @@
 //! Reads a scene file into a [`Scene`]: plain data without names or formulas.
 //!
 //! In: the texts of a file and of its `--set` arguments, which are parsed here. Out: a [`Scene`],
-//! or problems. In a [`Scene`], defaults are filled in and expressions are evaluated. Of fields
-//! that exclude each other, one is chosen. Every condition of the schema holds. Nothing here
-//! depends on the tracer.
+//! or problems. In a [`Scene`], defaults are filled in and expressions are evaluated. Alternative
+//! fields, such as `lookat` and `direction` of a camera, are reduced to the one that the file uses.
+//! Every condition of the schema holds. Nothing here depends on the tracer.
 
 #![cfg_attr(
     not(test),

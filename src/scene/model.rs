@@ -40,8 +40,8 @@ pub struct Scene {
     pub camera: Camera,
     /// The method and the number of samples.
     pub sampler: Sampler,
-    /// Objects in the order of the file. Where two objects are at the same distance, the first one
-    /// is visible. Scenes that differ only in camera, image or sampler share the objects.
+    /// Objects in the order of the file. If two objects are at the same distance, the first one is
+    /// visible. Several scenes can share the objects, for example while the camera moves.
     pub objects: Arc<Vec<Object>>,
 }
 
@@ -61,7 +61,8 @@ pub struct Image {
 pub struct Camera {
     /// The eye, through which all rays pass.
     pub eye: DVec3,
-    /// The view direction. If it is given by a point, the point differs from the eye.
+    /// The view direction. A point that defines it differs from the eye, so that the direction is
+    /// not zero.
     pub view: View,
     /// The up vector, not zero; it may be parallel to the view direction.
     pub up: DVec3,
@@ -74,8 +75,8 @@ pub struct Camera {
     pub view_height: f64,
     /// Depth of the near plane in metres, ≥ 0; nothing nearer is visible.
     pub near: f64,
-    /// Depth of the far plane in metres, > near; nothing farther is visible. `None` without a far
-    /// plane.
+    /// Depth of the far plane in metres, > near; nothing farther is visible. `None` if there is no
+    /// far plane.
     pub far: Option<f64>,
 }
 
@@ -93,8 +94,8 @@ pub enum View {
 ///
 /// Let h be the component of this direction that is perpendicular to up. The top of the picture
 /// lies in the direction h if the camera looks against up, and in the direction −h if it looks
-/// along up. The picture is the same as if the camera first looked in this direction and was then
-/// tilted.
+/// along up. A camera that looks along h with this up vector, and is then tilted down or up by 90°,
+/// shows the same picture.
 pub fn level_direction(up: DVec3) -> DVec3 {
     if up.x == 0.0 && up.y == 0.0 {
         DVec3::Y
@@ -201,9 +202,10 @@ impl View {
 ///
 ///   view_height / (height · d),
 ///
-/// where view_height is the height of the window in metres, and height that of the picture in
-/// pixels. If it has a field of view, the side is 2·tan(angle/2) divided by the picture's height or
-/// width in pixels. `tan_half` computes tan(angle/2) in the precision that the caller needs.
+/// where view_height is the height of the window in metres, and height is the height of the picture
+/// in pixels. If the camera has a field of view, the side is 2·tan(angle/2) divided by the
+/// picture's height or width in pixels. `tan_half` computes tan(angle/2) in the precision that the
+/// caller needs.
 pub fn pixel_size<T: Real>(camera: &Camera, image: &Image, tan_half: impl Fn(Angle) -> T) -> T {
     let [width, height] = [image.width, image.height].map(|pixels| T::from_f64(pixels.into()));
     let slope = |angle| T::from_f64(2.0).times(&tan_half(angle));

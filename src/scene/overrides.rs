@@ -189,10 +189,11 @@ impl<'s> Override<'s> {
         false
     }
 
-    /// Returns whether the argument's value has no errors if it is assigned to `place`. This is
-    /// either a field (`Ok`), whose conditions the value must meet, or the name of a `let` (`Err`),
-    /// whose value may use only names defined before it. Returns `false` without a check if
-    /// `budget`, the remaining number of name comparisons, is less than the number of items.
+    /// Returns whether the argument's value has no errors if it is assigned to `place`. If `place`
+    /// is a field (`Ok`), the value must also meet the field's conditions. If `place` is the name
+    /// of a `let` (`Err`), the value may use only names defined before this `let`. Returns `false`
+    /// without a check if `budget`, the remaining number of name comparisons, is less than the
+    /// number of items.
     fn suits(
         &self,
         place: Result<&schema::FieldRow, &str>,
@@ -244,9 +245,9 @@ fn row(block: &Block<'_>) -> Option<&'static schema::BlockRow> {
     schema::block_or_nearest(block.kind?.text)
 }
 
-/// Returns whether a `--set` argument with the block `target` sets fields of `block`. `target` is
-/// an object's name, or the keyword of a block that is no object, such as `camera`. In the second
-/// case, `setting` is the row of this kind of block.
+/// Returns whether a `--set` argument whose block is `target` sets fields of `block`. `target` is
+/// an object's name or, if `setting` is given, the keyword of a block that is no object, such as
+/// `camera`. `setting` is then the schema's row for this keyword.
 fn is_target(block: &Block<'_>, target: &str, setting: Option<&schema::BlockRow>) -> bool {
     match (row(block), setting) {
         (Some(row), Some(setting)) => row.kind == setting.kind,

@@ -1,8 +1,9 @@
 //! The meaning of a scene that may have errors. Editors use it to show the correct parts of a scene
 //! while other parts are being typed.
 //!
-//! In: the tree of a file, and what was built from it. Out: the tree, the parts of the scene, and
-//! the value of any expression in the tree.
+//! In: the tree of a file, the parts of the scene that could be built from the tree, and the
+//! defined names. Out: the tree, the parts of the scene, and the value of any expression in the
+//! tree.
 
 use std::sync::Arc;
 

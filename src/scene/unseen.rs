@@ -1,11 +1,11 @@
-//! Finds out whether the camera sees any object, and whether samples can tell the squares of a
-//! checkerboard apart. Warnings depend on it.
+//! Determines whether the camera sees any object, and whether samples can tell the squares of a
+//! checkerboard apart. Warnings depend on the results.
 //!
 //! In: a camera and the objects. Out: the reason why no object is in the picture, if bounding
 //! spheres show it; and whether a board's squares are too small for the precision of a sample's
-//! coordinates. An object counts as visible if the answer is uncertain, or if another object hides
-//! it, so a warning is never false. Computations are in `f64`; each comparison leaves a margin of
-//! [`MARGIN`] times the lengths in it.
+//! coordinates. An object is treated as visible if the answer is uncertain, or if another object
+//! hides it, so a warning is never false. Computations are in `f64`; each comparison leaves a
+//! margin of [`MARGIN`] times the lengths in it.
 
 use glam::DVec3;
 
@@ -18,10 +18,10 @@ use crate::{
     schema::CAMERA,
 };
 
-/// Margin of a comparison, relative to the lengths that are compared. It exceeds all rounding
-/// errors: since the sine of the angle between up and the view direction is at least `LEAST_SINE`,
-/// the relative error of the camera's axes is at most 2^−52/10^−6, about 2·10⁻¹⁰, and all other
-/// errors are smaller. A larger margin would miss objects close to the edge of the picture.
+/// Margin of a comparison, relative to the lengths that are compared. The margin must exceed all
+/// rounding errors. The greatest of them is the relative error of the camera's axes, which is at
+/// most 2^−52/`LEAST_SINE`, about 2·10⁻¹⁰. With a larger margin, objects just outside of the
+/// picture would not be recognised as invisible.
 const MARGIN: f64 = 1e-8;
 
 /// Minimum sine of the angle between up and the view direction for which visibility is judged. If
@@ -70,7 +70,7 @@ pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<
     })
 }
 
-/// Where an object lies that is wholly outside of the visible space.
+/// Position of an object that is wholly outside of the visible space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {
     /// Behind the camera.
@@ -98,10 +98,10 @@ impl Outside {
 /// Returns whether samples cannot tell the squares of a visible board apart, so that all squares
 /// get the same colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
-    // For a camera that looks straight down, up may be parallel to the view direction, and then the
-    // camera's axes are unknown. Axes are chosen for which the window's extents along x and z are
-    // its sides. For any other axes, both extents are at least the shorter side, so squares that
-    // are lost with the chosen axes are lost with any.
+    // If the camera looks straight down or up, its up vector may be parallel to the view direction,
+    // so the directions of the window's sides are unknown. They are then assumed to be x and z.
+    // With any other directions, the window's extents along x and z are at least its shorter side.
+    // Squares that are lost under this assumption are therefore lost in any case.
     let straight = || {
         let (from, to) = camera.view.ends(camera.eye);
         let along_y = (to - from).normalize().y.abs() > 1.0 - MARGIN;
@@ -138,7 +138,7 @@ impl Sight {
         let forward = (to - from).normalize();
         let right = forward.cross(camera.up.normalize());
         // If two points are close to each other but far from the origin, their difference has few
-        // correct digits.
+        // correct digits. The view direction is then not precise enough.
         let is_precise = from.distance(to) > LEAST_SINE * (from.length() + to.length());
         // The condition is negated so that the function also returns `None` if a length is NaN.
         if !(is_precise && right.length() > LEAST_SINE) {
@@ -163,8 +163,8 @@ impl Sight {
         })
     }
 
-    /// Returns where an object is if its bounding sphere shows that no part of it is in the
-    /// picture. Returns `None` if it may be visible.
+    /// Returns the position of an object whose bounding sphere is wholly outside of the picture.
+    /// Returns `None` if the object may be visible.
     pub fn outside(&self, shape: &Shape) -> Option<Outside> {
         let Some(sphere) = shape.bounding_sphere() else {
             let sees = self.may_see(shape, self.near, self.far);
@@ -220,7 +220,7 @@ impl Sight {
     /// by a margin. Here e is the eye and n the plane's normal, of length 1.
     fn is_beyond(&self, (center, radius): (DVec3, f64), n: DVec3, bound: f64) -> bool {
         let size = center.length() + radius + self.eye.length() + bound.abs();
-        // The comparison is `false` if a number is NaN.
+        // If a number is NaN, the comparison is `false`, so the sphere may be visible.
         n.dot(center - self.eye) + radius < bound - MARGIN * size
     }
 
@@ -243,16 +243,16 @@ impl Sight {
         above != 0.0 && most > 0.0 && nearest <= far && farthest >= near
     }
 
-    /// Returns whether nearly all rays hit the board so far from the eye that the coordinates of
-    /// the hits, counted in squares, have no digits left to tell neighbouring squares apart. All
-    /// such hits count as hits on even squares.
+    /// Returns whether the squares of a board are too small to be told apart. This is so if nearly
+    /// all rays hit the board so far from the eye that the coordinates of the hits, counted in
+    /// squares, are rounded to even integers. All hits then lie on even squares.
     fn are_lost(&self, board: &Checkerboard) -> bool {
-        // A ray with the direction r hits a board, at the vertical distance h from the eye, at the
-        // horizontal distance |r_x|·h/|r_y| along x, and likewise along z. In the window, |r_x| is
-        // at most its `extent`, and in more than 99 % of the picture, it is at least 2^−10 of the
-        // extent. A coordinate of [`Big::BITS`] bits or more counts as even, and `most` is 2^10
-        // times as large, with a factor of 2 to spare. If a number overflows or underflows, the
-        // comparison is false.
+        // Let h be the vertical distance of the board from the eye. A ray with the direction r hits
+        // the board at the horizontal distance |r_x|·h/|r_y| along x, and likewise along z. In the
+        // window, |r_y| is at most `extent.y`, and |r_x| is at least 2^−10·`extent.x` in more than
+        // 99 % of the picture. A coordinate above 2^[`Big::BITS`], counted in squares, is rounded
+        // to an even number. The condition requires twice this value, for safety. If a number
+        // overflows or underflows, the comparison is false.
         let [across, up] = self.window;
         let extent = self.forward.abs() + across.abs() + up.abs();
         let height = (board.y - self.eye.y).abs();

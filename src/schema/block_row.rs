@@ -1,5 +1,5 @@
-//! Lookups in the row of a kind of block: fields by their names, or by words that are near to them
-//! or that people use by mistake.
+//! Looks up the fields of a kind of block: by their names, by similar words, or by words that
+//! people use for them by mistake.
 
 use super::{
     blocks::BlockRow,
@@ -20,7 +20,8 @@ impl BlockRow {
         fields.filter(move |field| is_among(written, field.perhaps))
     }
 
-    /// Returns the help for a word of other programs that corresponds to no field.
+    /// Returns the help for a word that stands for a field in other programs but for no field of
+    /// this block.
     pub fn elsewhere(&self, written: &str) -> Option<&'static str> {
         let mut rows = self.elsewhere.iter();
         let row = rows.find(|(words, _)| is_among(written, words));
@@ -32,8 +33,8 @@ impl BlockRow {
         self.fields.iter().map(|field| field.name)
     }
 
-    /// Returns the names of the fields that values without names stand for at the start of a block,
-    /// as in `sphere { (0, 1, 0) 2 }`. Returns an empty list if these fields are unknown.
+    /// Returns the names of the fields to which values without names at the start of a block
+    /// probably belong, as in `sphere { (0, 1, 0) 2 }`. Returns an empty list if they are unknown.
     /// `are_vectors` says of each value whether it is a vector.
     pub fn names_of_values(&self, are_vectors: &[bool]) -> &'static [&'static str] {
         let is_vector = |name: &&str| self.field(name).map(|field| field.takes == Type::Vector);

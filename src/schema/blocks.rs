@@ -39,16 +39,17 @@ pub struct BlockRow {
     /// Sets of words that people use together by mistake, such as `x y z` for the coordinates of a
     /// centre.
     ///
-    /// The words of a set are separated by spaces, and sets by `|`. The second element names either
-    /// the one field whose coordinates or colours the words stand for, or one field for each word.
+    /// The words of a set are separated by spaces, and the sets of one entry by `|`. The second
+    /// element of an entry names either one field, if the words stand for its coordinates or
+    /// colours, or one field for each word.
     pub parted: &'static [(&'static str, &'static [&'static str])],
     /// Words that people use by mistake for the keyword, separated by spaces.
     pub also_tried: &'static str,
-    /// Words of other programs that correspond to no field, each with the help, which says what to
-    /// write instead.
+    /// Words that stand for a field in other programs but for no field of this block. The words of
+    /// one element are separated by spaces, and its help says what to write instead.
     pub elsewhere: &'static [(&'static str, &'static str)],
-    /// Lists of fields that values without names stand for at the start of a block, as in
-    /// `sphere { (0, 1, 0) }`.
+    /// For values without names at the start of a block, as in `sphere { (0, 1, 0) }`, the fields
+    /// to which they may belong. Each list has one field for each value.
     pub nameless: &'static [&'static [&'static str]],
     /// The fields that an editor writes for a new object. The editor replaces `{at}` by a free
     /// place, `{across}` by the direction from this place to the camera, `{size}` by half of the
@@ -82,17 +83,20 @@ impl<T> FieldHandle<T> {
 }
 
 impl<T: FieldValue> FieldHandle<T> {
-    /// Returns `value` if `name` is the field's name, and otherwise `None`.
+    /// Returns `value` if `name` is the field's name, and otherwise `None`. An object finds the
+    /// value for a name by trying its fields in turn.
     pub fn of<'a>(self, name: &str, value: &'a mut T) -> Option<&'a mut dyn FieldValue> {
         (name == self.name).then_some(value)
     }
 }
 
-/// Makes the kinds of blocks, their rows, and a handle for each field.
+/// Defines the kinds of blocks, their rows in the table of the language, and a handle for each
+/// field.
 ///
-/// The words before the first braces give the kind of block, and the type and the name of its
-/// handles. A line in the first braces gives a field's name, type, preset and help; then any other
-/// columns of its row. The second braces hold columns of the block's row.
+/// Three words precede the first braces: the kind of block, and the type and the constant of its
+/// handles. Each line in the first braces defines a field by its name, its type, its [`Preset`],
+/// its help and optional entries of [`FieldRow`]. The second braces contain entries of
+/// [`BlockRow`].
 macro_rules! blocks {
     ($($kind:ident $handles:ident $constant:ident {
         $($field:ident $takes:ident $preset:ident $(($default:literal))? $help:literal $($more:ident($value:expr))*;)*
@@ -367,6 +371,6 @@ const POSITION: &str = "position pos at centroid middle location";
 /// Words that people use by mistake for the colour of an object.
 const COLOR: &str = "fill material";
 
-/// Shapes of other programs, separated by spaces. The help says that such shapes can be made of
-/// triangles.
+/// Shapes that other programs have but this language lacks, separated by spaces. With this list,
+/// the help for such a word can say that other shapes are made of triangles.
 pub const OTHER_SHAPES: &str = "cylinder cone torus disk disc pyramid quad mesh prism";

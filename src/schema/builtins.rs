@@ -8,8 +8,8 @@ pub fn function(name: &str) -> Option<&'static Function> {
     FUNCTIONS.iter().find(|function| function.name == name)
 }
 
-/// Defines rows of functions. A line holds the name, the types of the arguments and of the result,
-/// the help, and then any other fields of [`Function`].
+/// Defines the rows of functions. A line contains the name, the types of the arguments, the type of
+/// the result, the help, and optional fields of [`Function`].
 macro_rules! functions {
     ($($name:ident($($takes:ident)*) $gives:ident $help:literal $($more:ident($value:expr))*;)*) => {
         &[$(Function {

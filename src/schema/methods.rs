@@ -49,7 +49,8 @@ methods! {
 }
 
 impl Method {
-    /// Techniques that take samples, i.e. all except `exact`, in the order of the language's table.
+    /// Techniques that take samples, i.e. all except `exact`. They are in the order in which the
+    /// language's reference lists them.
     pub const SAMPLED: [Self; 9] = [
         Self::Regular,
         Self::Random,
@@ -99,7 +100,8 @@ pub fn nearest_method(written: &str) -> Option<&'static str> {
     tried.or_else(|| suggest::nearest(written, method_names()))
 }
 
-/// Returns whether `written` can only mean the technique that is named `near`.
+/// Returns whether `written` can only mean the technique that is named `near`: people use it by
+/// mistake for this technique, or it is similar to this name alone.
 pub fn is_sure_method(written: &str, near: &str) -> bool {
     let mut tried = ALSO_TRIED.iter();
     tried.any(|(method, words)| method.name() == near && is_among(written, words))

@@ -1,5 +1,5 @@
-//! Columns of the language's tables: what is known about a field, its default, its conditions, and
-//! choices among fields.
+//! Types that describe a field in the tables of the language: its row, its default, the conditions
+//! on its values, and the fields that it excludes.
 
 use std::fmt;
 
@@ -12,8 +12,8 @@ use crate::math::compare_half_turns;
 /// thing, and a block uses the fields of one way only.
 #[derive(Debug)]
 pub struct Choice {
-    /// The alternative ways, each a list of fields. In a block that uses a way, a field of this way
-    /// is required if its preset is [`Preset::Alternative`].
+    /// The alternative ways, each a list of fields. If a block uses a way, it must have all fields
+    /// of this way whose preset is [`Preset::Alternative`].
     pub ways: &'static [&'static [&'static str]],
     /// Reason, for messages, why a block can use only one of the alternative ways.
     pub why: &'static str,
@@ -70,14 +70,14 @@ impl FieldRow {
         }
     }
 
-    /// Returns whether a value meets the field's conditions. A condition on another type of value
-    /// counts as met.
+    /// Returns whether a value meets the field's conditions. A condition on values of another type
+    /// is ignored.
     pub fn allows(&self, value: Value) -> bool {
         self.must.iter().all(|condition| condition.holds(value))
     }
 }
 
-/// What holds if a block does not have a field: the field's default, or whether it is required.
+/// The default of a field. If it has none, says whether a block must have the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Preset {
     /// No default: the field is required.
@@ -114,8 +114,8 @@ pub enum Condition {
 }
 
 impl Condition {
-    /// Returns whether a value meets the condition. A condition on another type of value counts as
-    /// met.
+    /// Returns whether a value meets the condition. A condition on values of another type is
+    /// ignored, i.e. the result is `true`.
     pub fn holds(&self, value: Value) -> bool {
         let two_to = |power: u32| (1_u64 << power) as f64;
         match (*self, value) {

@@ -129,7 +129,8 @@ impl Value {
     }
 }
 
-/// Formats the value in the language's notation, for people to read: numbers have six digits.
+/// Formats the value in the language's notation, for people to read. Numbers are rounded, most of
+/// them to six digits.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -155,9 +156,10 @@ pub trait FieldValue {
     where
         Self: Sized;
 
-    /// Returns the contents as a value.
+    /// Returns this as a value of the language.
     fn value(&self) -> Value;
 
-    /// Changes the contents. Returns `None` if the new value is of another type.
+    /// Replaces this value by `value`. Returns `None`, and changes nothing, if `value` has another
+    /// type.
     fn set(&mut self, value: Value) -> Option<()>;
 }

@@ -29,19 +29,21 @@ impl Encoding {
     }
 }
 
-/// Index with which lines and columns of offsets are found: the starts of the lines, and the
-/// characters with more than one byte.
+/// Tables from which the line and column of an offset are computed: the starts of the lines, and
+/// the characters that have more than one byte.
 #[derive(Clone, Debug)]
 pub struct Lines {
     starts: Vec<usize>,
-    /// For each character with more than one byte, in the order of the text: the offset of its end,
-    /// and by how much the bytes up to there exceed the UTF-16 code units, and the characters.
+    /// One entry for each character that has more than one byte, in the order of the text. The
+    /// first number is the offset of the character's end. The second is the number of bytes before
+    /// this offset minus the number of UTF-16 code units, and the third the number of bytes minus
+    /// the number of characters.
     wide: Vec<[usize; 3]>,
     length: usize,
 }
 
 impl Lines {
-    /// Makes the index of a text.
+    /// Makes the tables for a text.
     pub fn new(text: &str) -> Self {
         let ends = memchr::memchr_iter(b'\n', text.as_bytes());
         let (mut wide, mut excess) = (Vec::new(), [0; 2]);
@@ -67,7 +69,8 @@ impl Lines {
         self.starts.partition_point(|&start| start <= offset) - 1
     }
 
-    /// Returns the byte range of a line with its end; `None` beyond the last line.
+    /// Returns the byte range of a line, including its line end. Returns `None` if there is no such
+    /// line.
     pub fn range(&self, line: usize) -> Option<Range<usize>> {
         let end = self.starts.get(line + 1).unwrap_or(&self.length);
         Some(*self.starts.get(line)?..*end)

@@ -3,8 +3,10 @@
 //! The page's files contain no secret and are served to any request for this host. A WebSocket
 //! connection gives access to the scene's file, so it requires a token.
 //!
-//! Other pages in the same browser can connect, too, but they cannot forge two headers that are
-//! checked: `Host`, because the name of a foreign host may resolve to this machine, and `Origin`.
+//! Pages of other sites in the same browser can connect to the host, too. They are recognized by
+//! two headers that a page cannot forge: `Origin` names the site of the page, and `Host` reveals a
+//! site whose own name resolves to this machine (DNS rebinding).
+//!
 //! The browser never sends a token by itself: the token is in the fragment of the address, which
 //! browsers do not send. Cookies are not used, since browsers would send them to all servers on the
 //! machine.
@@ -29,13 +31,14 @@ use crate::lock::lock;
 /// Path in the host's address at which pages open a WebSocket.
 pub const SOCKET: &str = "/socket";
 
-/// Lifetime of the token in the address with which the host starts a browser. A page that shows the
-/// token later is refused. Even on a slow machine, a browser starts within a minute. The time is
-/// short, because other users of the machine can read the address in the command line.
+/// Lifetime of the token in the address with which the host starts a browser. After this time, the
+/// token is refused. Even on a slow machine, a browser starts within a minute. A longer time would
+/// be less secure, because other users of the machine can read the address in the command line.
 const LIFETIME: Duration = Duration::from_secs(60);
 
-/// Decides whether a request to the host at `port` must be refused, whether it has a token or not.
-/// Returns the HTTP status and the reason, or `None` if the request is allowed.
+/// Decides whether a request to the host at `port` must be refused because of its address, origin
+/// or method. The token is checked elsewhere. Returns the HTTP status and the reason, or `None` if
+/// the request is allowed.
 pub fn refusal(
     port: u16,
     method: &Method,
@@ -107,8 +110,8 @@ impl Pass {
         }
     }
 
-    /// Returns whether the permission is revoked and the connection must end. This happens if a
-    /// second page uses the address with which the first page was opened.
+    /// Returns whether the permission is revoked and the connection must end. A permission that was
+    /// given for the token in the command line is revoked if the token is sent a second time.
     pub fn is_over(&self) -> bool {
         self.is_over.load(Ordering::SeqCst)
     }
@@ -120,9 +123,9 @@ impl Pass {
 pub enum NotAdmitted {
     /// The token does not belong to this host. It may belong to an earlier run.
     Unknown = 4001,
-    /// The address with which a browser was started was used after its lifetime.
+    /// The token in the command line was sent after its lifetime.
     Late = 4002,
-    /// The address with which a browser was started was used a second time.
+    /// The token in the command line was sent a second time.
     Twice = 4003,
 }
 
@@ -143,8 +146,8 @@ impl Access {
         })
     }
 
-    /// Returns two tokens: of the address that is printed, and of the address with which a browser
-    /// is started.
+    /// Returns two tokens. The first is in the address that is printed for the user, the second in
+    /// the address with which the host starts a browser.
     pub fn tokens(&self) -> [String; 2] {
         let started = lock(&self.started);
         [self.printed.clone(), started.once.clone()]

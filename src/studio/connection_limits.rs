@@ -27,9 +27,9 @@ use tokio::{
     time::timeout,
 };
 
-/// Maximum number of open connections that have not sent a valid token. For a further one, the
-/// oldest is closed. A page needs at most three while it loads, and one until it has sent its
-/// token, so that 64 suffice for many pages. More would let other programs use more of the machine.
+/// Maximum number of open connections that have not sent a valid token. For a further connection,
+/// the oldest is closed. A page opens at most four connections, so 64 suffice for many pages. With
+/// a higher number, other programs on the machine could make the host use more memory.
 const MOST: usize = 64;
 
 /// Time after which a connection that has not sent a valid token is closed. On one machine, a
@@ -37,12 +37,13 @@ const MOST: usize = 64;
 /// seconds suffice even if the machine is slow.
 const LIFETIME: Duration = Duration::from_secs(5);
 
-/// Maximum number of bytes that a connection may send before it has sent a valid token. A
-/// connection that sends more fails. A browser's request has about 1 KiB, or more if other programs
-/// on this machine have set many cookies. 32 KiB leave room for these.
+/// Maximum number of bytes that a connection may send before it has sent a valid token. If it sends
+/// more, it is closed. A browser's request has about 1 KiB, or more if other programs on this
+/// machine have set many cookies. 32 KiB leave room for these.
 const LONGEST: usize = 32 << 10;
 
-/// State of a connection, which the connection shares with the handlers of its requests.
+/// State of a connection. The handler of a request has a copy, by which it lifts the limits of the
+/// connection.
 #[derive(Clone, Debug, Default)]
 pub struct Visitor(Arc<VisitorState>);
 
@@ -78,7 +79,7 @@ pub struct Door {
 }
 
 impl Door {
-    /// Makes a listener with limits from a listener without them.
+    /// Creates a limiting listener from a plain one.
     pub fn new(listener: TcpListener) -> Self {
         Self {
             listener,
@@ -106,7 +107,8 @@ impl Listener for Door {
 
     async fn accept(&mut self) -> (Connection, SocketAddr) {
         let (stream, address) = Listener::accept(&mut self.listener).await;
-        // If the option cannot be set, small messages are sent later, but nothing fails.
+        // If the socket option `TCP_NODELAY` cannot be set, small messages are only delayed, so the
+        // error is ignored.
         let _ = stream.set_nodelay(true);
         self.make_place();
         let visitor = Visitor::default();
@@ -119,14 +121,15 @@ impl Listener for Door {
     }
 }
 
-/// A connection that fails if it exceeds a limit before it has sent a valid token.
+/// A TCP connection. Until it has sent a valid token, reading and writing fail if it exceeds a
+/// limit.
 pub struct Connection {
     stream: TcpStream,
     visitor: Visitor,
     /// Number of bytes that the connection may still send before it has sent a valid token.
     left: usize,
-    /// Future that is ready when the connection's time is over or a newer connection needs its
-    /// place. It is `None` afterwards.
+    /// Future that is ready when the connection must be closed, because its time is over or because
+    /// there are too many connections. It is `None` afterwards.
     stay: Option<Pin<Box<dyn Future<Output = ()> + Send>>>,
 }
 
@@ -144,8 +147,8 @@ impl Connection {
         }
     }
 
-    /// Fails if the connection has not sent a valid token, and its time is over or a newer
-    /// connection needs its place.
+    /// Returns an error if the connection has not sent a valid token and must be closed, because
+    /// its time is over or because there are too many connections.
     fn check(&mut self, context: &mut Context<'_>) -> io::Result<()> {
         if self.visitor.is_admitted() {
             return Ok(());

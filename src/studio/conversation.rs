@@ -1,8 +1,9 @@
 //! Serves one page over a WebSocket connection.
 //!
-//! A request of a page may replace earlier ones, so all messages that have arrived are handled
-//! before the work continues. Without work, the thread waits for the socket. At regular intervals,
-//! it checks the scene's file and the picture that another thread renders.
+//! A new request of a page may replace an earlier one, so all messages that have arrived are read
+//! before a request is answered. If no request waits, the thread waits for a message. At regular
+//! intervals, it checks whether the scene's file has changed, and sends the progress of a picture
+//! that another thread renders.
 
 use std::{
     convert::Infallible,
@@ -40,17 +41,18 @@ use crate::{
 /// with the memory of a machine.
 pub const LONGEST: usize = 64 << 20;
 
-/// Maximum time to wait for a message of the page before the scene's file and the progress of a
+/// Maximum time to wait for a message of the page. Then the scene's file and the progress of a
 /// picture are checked again. A user does not notice a delay of 50 ms; a much shorter time would
 /// keep an idle processor busy.
 const WAIT: Duration = Duration::from_millis(50);
 
-/// Maximum time to wait until a page receives a message. After this time, the connection ends. A
-/// browser on the same machine receives messages at once, unless it is stopped.
+/// Maximum time to wait until a page has received a message. After this time, the connection is
+/// closed. A browser on the same machine usually receives a message within milliseconds, so after
+/// 10 s its process is probably suspended.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// Minimum time between two messages about the progress of a download. A progress bar that moves
-/// five times a second looks continuous enough; more messages would only take time.
+/// five times a second looks continuous enough, so more messages would have no visible effect.
 const PROGRESS: Duration = Duration::from_millis(200);
 
 /// Maximum time to wait for the page's answer to a close frame. It must be shorter than the 500 ms
@@ -142,9 +144,9 @@ impl Conversation<'_> {
         Err(Closing(Some(close_code::NORMAL)))
     }
 
-    /// Reads a message of the page. Returns `None` if none arrives in time. Does not wait if the
-    /// server has work to do, since even the shortest timeout, a millisecond, would delay the work
-    /// too much.
+    /// Reads a message of the page. Returns `None` if none arrives in time. Returns at once if the
+    /// server has work to do: even the shortest timeout, a millisecond, would delay each slice of
+    /// the work noticeably.
     fn read(&mut self) -> Result<Option<SocketMessage>, Closing> {
         let socket = &mut self.socket;
         let read = if self.server.is_busy() {
@@ -286,8 +288,9 @@ impl Conversation<'_> {
                 let is_new = file.path().is_none();
                 match file.save(text, field("base"), field("name")) {
                     Ok(version) => {
-                        // The page that has saved has the new content already. But it does not know
-                        // the path of a new scene, so a new scene is sent to it.
+                        // The page that has saved a file has its content already, so the content is
+                        // not sent to the page again. A new scene is sent, because the page does
+                        // not know its path yet.
                         if !is_new {
                             self.known = version;
                         }

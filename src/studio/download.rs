@@ -67,8 +67,8 @@ pub struct Sliced {
 }
 
 impl Sliced {
-    /// Begins to render the file that a request asks for. Refuses to make an EXR file, since the
-    /// tables of EXR's compression methods would be a quarter of the code that a browser loads.
+    /// Begins to render the file that a request asks for. Refuses to make an EXR file: support for
+    /// EXR's compression methods would be a quarter of the code that a browser loads.
     ///
     /// # Errors
     ///

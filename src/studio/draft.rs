@@ -1,10 +1,11 @@
-//! Stores drafts of a scene, i.e. texts that were not saved on a page. Only the user can read them.
+//! Stores drafts of a scene, i.e. texts that were edited on a page but not saved. Only the user can
+//! read them.
 //!
 //! All drafts of a scene are in one file in the user's state folder, named after the scene's
-//! canonical path. A browser's own storage is not suitable: it belongs to a port, and the host has
-//! another port in each run. Each page stores its draft under a key of its own, so that pages do
-//! not overwrite each other's drafts. A draft is removed when its text is saved or when it is too
-//! old.
+//! canonical path. A browser's own storage is not suitable, because it is separate for each port,
+//! and the host has another port in each run. Each page stores its draft under a key of its own, so
+//! that pages do not overwrite each other's drafts. A draft is removed when its text is saved or
+//! when it is too old.
 
 use std::{
     io,
@@ -28,7 +29,7 @@ const LIFETIME: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 /// Each open page stores one draft, and users rarely have more than a few pages open.
 const MOST: usize = 10;
 
-/// A draft, i.e. a text that was not saved on a page.
+/// A draft, i.e. a text that was edited on a page but not saved.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Unsaved {
     /// Key under which the draft is stored. Each page has a key of its own.
@@ -82,8 +83,8 @@ impl Drafts {
         read().unwrap_or_default()
     }
 
-    /// Replaces the stored drafts by the first [`MOST`] of `drafts`, whose order must be from the
-    /// newest to the oldest.
+    /// Stores the first [`MOST`] of `drafts` in place of the previous ones. The newest draft must
+    /// come first.
     ///
     /// # Errors
     ///

@@ -33,9 +33,9 @@ use super::{
     scene_file::SceneFile,
 };
 
-/// Maximum time that the host, when it ends, waits for its connections to finish a save and to
-/// close. Then the host ends in any case, even if a disk does not respond. Half a second suffices
-/// for a usual save, and is short enough for a user who has pressed Ctrl+C.
+/// Maximum time that the ending host waits for its connections to finish a save and to close. After
+/// this time, the host ends even if a disk does not respond. Half a second suffices for a usual
+/// save; a longer time would annoy a user who has pressed Ctrl+C.
 const FAREWELL: Duration = Duration::from_millis(500);
 
 /// HTML of Studio's page, as `npm run build` writes it.
@@ -58,8 +58,8 @@ pub struct Host {
 struct Shared {
     access: Access,
     file: Mutex<SceneFile>,
-    /// Whether the host ends. Each connection holds a receiver of this value until the connection
-    /// ends.
+    /// Whether the host ends. Each connection holds a receiver of this value until it is closed, so
+    /// that the host can wait until no receiver is left.
     ending: watch::Sender<bool>,
 }
 

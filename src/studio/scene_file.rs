@@ -34,8 +34,8 @@ pub struct SceneFile {
     /// saved.
     watch: Option<Arc<Latest<FileContent>>>,
     drafts: Drafts,
-    /// New scenes in the same folder that pages have saved under another name. Pages may save these
-    /// files again.
+    /// Paths of the new scenes that pages have saved in the same folder under another name. A later
+    /// save may overwrite these files, because Studio has created them.
     beside: Vec<PathBuf>,
 }
 
@@ -144,8 +144,8 @@ impl SceneFile {
     }
 
     /// Reads the file again if the watcher reports a change, and returns the version number. The
-    /// content from the watcher itself is not used, since a page may have saved a newer one
-    /// meanwhile.
+    /// content from the watcher itself is not used: a page may have saved a newer text after the
+    /// watcher read the file.
     pub fn refresh(&mut self) -> u64 {
         if let (Some(path), Some(watch)) = (&self.path, &self.watch)
             && watch.try_take().is_some()
@@ -170,8 +170,9 @@ impl SceneFile {
     }
 
     /// Saves the text `new` if the file still contains `base`, the content that the page began to
-    /// edit. With another `name`, saves a new scene in the same folder; no file may have this name
-    /// yet. Removes drafts with the text `new`. Returns the version number of the content.
+    /// edit. With another `name`, saves a new scene in the same folder. Fails if a file with this
+    /// name exists, unless a page has created it by an earlier save. Removes drafts with the text
+    /// `new`. Returns the version number of the content.
     ///
     /// # Errors
     ///
@@ -255,8 +256,8 @@ fn create(name: &str, path: &Path, text: &str) -> Result<(), NotSaved> {
 fn text(bytes: io::Result<Vec<u8>>) -> io::Result<String> {
     let bytes = bytes?;
     let no_text = |why| io::Error::new(io::ErrorKind::InvalidData, why);
-    // In UTF-16, about half of the bytes of a scene are zero. So a text without zero bytes is not
-    // UTF-16.
+    // In UTF-16, about half of the bytes of a scene are zero. So the encoding needs to be checked
+    // only if the text contains a zero byte.
     if bytes.contains(&0) && Source::from_bytes("", bytes.clone()).is_utf16() {
         return Err(no_text("it is UTF-16, not UTF-8: save it as UTF-8"));
     }
@@ -312,8 +313,8 @@ mod tests {
 
     #[test]
     fn what_is_saved_between_reading_and_writing_is_kept() {
-        /// Reads a file. If the file contains `mine`, another program then saves a text over it,
-        /// right after reading.
+        /// Reads a file. If it contains `mine`, overwrites it right after reading, like another
+        /// program that saves at this moment.
         fn read_and_saved(path: &Path) -> io::Result<Vec<u8>> {
             let bytes = files::read(path, 99)?;
             if bytes == b"mine" {

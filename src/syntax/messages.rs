@@ -29,7 +29,8 @@ pub const BAD_REPETITION: Message = Message::new(["bad_repetition", "{0}", "not 
 /// Message about a mistake in `for INDEX < COUNT`, which repeats an object. It is used if no more
 /// specific message applies.
 pub const REPEATED: &str = "an object is repeated by `for INDEX < COUNT`";
-/// Help for a mistake in `for INDEX < COUNT`, which repeats an object: an example.
+/// Help for a mistake in `for INDEX < COUNT`, which repeats an object. Shows an example of a
+/// correct repetition.
 pub const REPEATED_SO: &str = "write, for example, `sphere for i < 8 { center (i, 1, 0) }`: i is 0, 1, 2, … 7; of two indices, as in `for i < 8, j < i`, the second counts within the first";
 pub const MISPLACED_INDICES: Message = Message::new(["bad_repetition", "indices stand in the head of an object", "not in its block", "write them before the `{`, as in `sphere for i < 8 {`"]);
 pub const COUNT_WITH_LAST: Message = Message::new(["bad_repetition", "an index ends before its count, and is never equal to it", "not written so", ""]);
@@ -78,8 +79,8 @@ const STATEMENTS: &[[&str; 3]] = &[
     ["function fn def fun lambda return class struct", "functions of one's own", "give each result a name with `let NAME = VALUE`"],
 ];
 
-/// In other languages, some statements start with `word`. Returns a plural noun for these
-/// statements, such as "loops", and the help. Returns `None` if `word` starts no such statement.
+/// Looks up a word that starts a statement in other languages, such as `while`. Returns a plural
+/// noun for such statements, such as "loops", and the help. Returns `None` for any other word.
 pub fn statement(word: &str) -> Option<[&'static str; 2]> {
     let is_one = |row: &&[&str; 3]| row[0].split(' ').any(|start| start == word);
     STATEMENTS.iter().find(is_one).map(|row| [row[1], row[2]])
@@ -89,15 +90,15 @@ pub fn statement(word: &str) -> Option<[&'static str; 2]> {
 /// whose z axis points away from the viewer.
 const LEFT_HANDED: &str = "; turn the sign of every z (`pinhole explain left_handed`)";
 
-/// Patterns that recognize files of other programs. A file matches a row if it starts as the row
+/// Patterns that recognize files of other programs. A file matches a row if it begins as the row
 /// says, contains enough of the row's strings, and contains none of the row's forbidden characters.
-/// The columns of a row:
+/// The columns of a row are:
 ///
 /// - the name of the format;
-/// - the possible beginnings of the file, of at most five characters, white space left out,
-///   separated by spaces;
+/// - the possible beginnings of the file, separated by spaces: its first characters without white
+///   space, at most five;
 /// - the strings to count in the file, separated by `|`;
-/// - the minimum total count of these strings;
+/// - the minimum total number of these strings;
 /// - the characters that must not occur in the file;
 /// - an addition to the help.
 pub const FOREIGN_FILES: &[(&str, &str, &str, usize, &str, &str)] = &[

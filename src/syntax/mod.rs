@@ -54,9 +54,9 @@ pub struct Parsed<'s> {
     /// Whether a mistake, such as an unclosed comment, hides a part of the text. No missing block
     /// or field is then reported, since the hidden part may contain it.
     pub is_cut: bool,
-    /// Whether an item follows the grammar but was probably meant otherwise, such as a block with
-    /// an unknown field, and error recovery found no better reading. Error recovery depends on line
-    /// ends, so a formatted copy of the text must be parsed again to see whether it has syntax
-    /// errors.
+    /// Whether error recovery was tried on an item that follows the grammar, such as a block with
+    /// an unknown field, and found no better reading of it. Error recovery depends on line ends, so
+    /// its result may differ for a formatted copy of the text. Such a copy must therefore be parsed
+    /// again to see whether it has syntax errors.
     pub is_doubtful: bool,
 }

@@ -56,15 +56,16 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
 /// ([`NESTING_LIMIT`](super::NESTING_LIMIT)). All levels together fit into half of this size.
 pub const STACK_BYTES: usize = 64 << 20;
 
-/// Minimum length, in bytes, of a value that is parsed on a thread with a stack of its own. A
-/// shorter value cannot nest deep, since each level takes at least one byte, so it is parsed on the
-/// caller's stack. Most defaults of fields are shorter than 32 bytes and need no thread. With a
-/// much larger minimum, a value could overflow a small stack.
+/// Minimum length, in bytes, of a value that is parsed on a thread with a stack of its own. Shorter
+/// values are parsed on the caller's stack: each nesting level needs at least one byte of text, so
+/// they have fewer than 32 levels. Most defaults of fields are that short and need no thread. With
+/// a much larger minimum, a value could overflow a small stack.
 const SHORT_VALUE_BYTES: usize = 32;
 
-/// Minimum number of bytes that pest, the generated parser, reads at a time. It reads on to the
-/// next place where the text can be split. pest keeps all matches of grammar rules in memory until
-/// it has read its part of the text, so a much larger number would take much memory.
+/// Minimum number of bytes that pest, the generated parser, reads at a time. The actual number is
+/// usually larger, because a piece of text ends at a place where the text can be split. pest keeps
+/// all matches of grammar rules of a piece in memory, so a much larger number would need much
+/// memory.
 pub const CHUNK_BYTES: usize = 4096;
 
 /// Parses a file.
@@ -168,7 +169,7 @@ pub struct TreeBuilder<'w, 's> {
     text: &'s str,
     id: SourceId,
     words: &'w Vocabulary<'s>,
-    /// Byte offset of the text that pest reads. The positions that pest returns count from it.
+    /// Byte offset of the text that pest reads. pest returns positions relative to this offset.
     base: usize,
     /// Whether the last item follows the grammar but has an unknown field or function, so that
     /// error recovery should read it again.
@@ -187,10 +188,10 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         }
     }
 
-    /// Parses the items in `range` with pest, and adds their nodes to `recovery`. Returns the end
-    /// of the last item, and `true`. An item that was probably meant otherwise is read again by
-    /// error recovery. If this reading ends elsewhere, stops there and returns the new end and
-    /// `false`.
+    /// Parses the items in `range` with pest, and adds their nodes to `recovery`. An item that was
+    /// probably meant otherwise is read again by error recovery. If the two readings of an item end
+    /// at different offsets, reading stops after this item and `false` is returned, and otherwise
+    /// `true`. Also returns the end of the last item.
     pub fn items(&mut self, range: Range<usize>, recovery: &mut Recovery<'_, 's>) -> (usize, bool) {
         self.base = range.start;
         let slice = self.text.get(range.clone()).unwrap_or_default();
@@ -248,8 +249,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
     fn block(&mut self, pair: Pair<'_, Rule>) -> Block<'s> {
         let mut block = Block::new(self.span(&pair), None, None);
         let parts = pair.into_inner();
-        // Usually, all parts except the kind and the two braces are fields, so memory for that many
-        // is reserved.
+        // Usually, all parts except the kind and the two braces are fields. Memory is reserved for
+        // this number of fields.
         block.fields.reserve_exact(parts.len().saturating_sub(3));
         for part in parts {
             match part.as_rule() {

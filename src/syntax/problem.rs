@@ -10,8 +10,8 @@ use crate::{
 /// Texts of a problem, and whether its fix is safe.
 #[derive(Clone, Copy, Debug)]
 pub struct Message {
-    /// In order: the code without `pinhole::`, the message, the label, and the help, which is shown
-    /// if there is no fix.
+    /// The four texts: the code without `pinhole::`, the message, the label and the help. The help
+    /// is shown only if there is no fix.
     texts: [&'static str; 4],
     applicability: Applicability,
 }
@@ -38,8 +38,8 @@ impl Message {
         self
     }
 
-    /// Returns whether the code of the problem says that a token is superfluous, as in
-    /// `needless_comma`.
+    /// Returns whether the problem is a superfluous token: its code is `plus_sign` or starts with
+    /// `needless`.
     pub fn is_needless(&self) -> bool {
         self.texts[0].starts_with("needless") || self.texts[0] == "plus_sign"
     }

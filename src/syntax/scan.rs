@@ -18,9 +18,9 @@ use crate::{
 };
 
 /// Minimum distance, in bytes, between two recorded places where a text can be split for parsing. A
-/// nearer place is left out, which saves memory. The distance is small compared with
-/// [`CHUNK_BYTES`](super::parser::CHUNK_BYTES), the minimum number of bytes that are parsed at a
-/// time, so hardly more than this minimum is parsed.
+/// nearer place is left out, which saves memory. With a much larger distance, the parts that are
+/// parsed at a time would be much longer than [`CHUNK_BYTES`](super::parser::CHUNK_BYTES), their
+/// minimum length.
 const SPLIT_SPACING_BYTES: usize = 256;
 
 /// Result of scanning a text.
@@ -28,9 +28,9 @@ const SPLIT_SPACING_BYTES: usize = 256;
 pub struct Scan {
     /// All comments, in the order of the text.
     comments: Vec<Span>,
-    /// Offsets where more parentheses and minuses are open than [`NESTING_LIMIT`] allows in a
-    /// value. Subtraction signs are counted as if they were negations, so the count may be too
-    /// high. Error recovery reads the items at these offsets and counts exactly.
+    /// Offsets where a value may nest deeper than [`NESTING_LIMIT`]. Parentheses and minuses are
+    /// counted here, and a minus is counted even if it subtracts, which does not nest. Error
+    /// recovery therefore reads the items at these offsets again and counts exactly.
     pub deep: Vec<usize>,
     /// Ascending offsets where a text without mistakes can be split: after a `}` or before a `let`.
     /// Neighbouring offsets are at least [`SPLIT_SPACING_BYTES`] apart.
@@ -45,8 +45,8 @@ impl Scan {
     pub fn of(text: &str, id: SourceId, start: usize, cancel: &AtomicBool) -> Self {
         let mut scan = Self::default();
         let mut lexer = Lexer::new(text, start);
-        // In order: the number of minuses since the last operand, the number of minuses before all
-        // open parentheses, and for each open parenthesis the number of minuses before it.
+        // `minuses` is the number of minuses since the last operand. `open` contains, for each open
+        // parenthesis, the number of minuses directly before it, and `outside` is the sum of these.
         let (mut minuses, mut outside, mut open) = (0, 0, Vec::new());
         let mut is_told = false;
         // Number of tokens between two checks for cancellation. A much larger number would delay
@@ -126,8 +126,8 @@ impl Scan {
         }
     }
 
-    /// Returns whether the text has no unclosed comment, no value that nests too deep and no odd
-    /// white space.
+    /// Returns whether the text has no unclosed comment, no value that may nest too deep, and no
+    /// invisible character except the white space of the language.
     pub fn is_plain(&self, text: &str) -> bool {
         self.open_comment(text).is_none() && self.deep.is_empty() && self.odd_spaces.is_empty()
     }
@@ -161,7 +161,8 @@ impl Scan {
         parsed.comments = self.comments;
     }
 
-    /// Reports each kind of odd character once, at its first place.
+    /// Reports the invisible characters that are not white space of the language. Each character is
+    /// reported once, at its first place.
     fn report_odd_spaces(&self, text: &str, problems: &mut Vec<Diagnostic>) {
         let mut sorts: BTreeMap<&str, Vec<Span>> = BTreeMap::new();
         for place in &self.odd_spaces {
@@ -204,7 +205,8 @@ impl Scan {
     }
 }
 
-/// Returns the name of an invisible character.
+/// Returns a noun for an invisible character in a message: its code point and its name, such as
+/// `U+00A0, a no-break space,`.
 fn name_of_space(text: &str) -> String {
     let character = text.chars().next().unwrap_or_default();
     let name = match character {

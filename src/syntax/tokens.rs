@@ -9,18 +9,20 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TokenKind {
-    /// A word of ASCII letters, digits and `_` that does not start with a digit; `let` is one.
+    /// A word of ASCII letters, digits and `_` that does not start with a digit. The keyword `let`
+    /// also has this kind.
     Name,
     /// A word that starts with a digit, or with a `.` and a digit: `2`, `1e-3`, `30deg`, `0x10`.
     Number,
-    /// A colour code such as `#ff8000`: `#` and any word that follows it without a space.
+    /// A colour code such as `#ff8000`: a `#` and the word directly after it, even if this word is
+    /// no valid code.
     Color,
-    /// A text in quotation marks, including the marks. Without a closing mark in its line, it is
-    /// the opening mark and the word after it.
+    /// A text in quotation marks, including the marks. If no closing mark follows in its line, it
+    /// is only the opening mark and the word directly after it.
     Quoted,
     /// A word with letters that are not ASCII.
     Word,
-    /// Any other character, `**` or `:=`.
+    /// The signs `**` and `:=`, or any other single character.
     Sign,
     /// `// …` without its line end, or `/* … */`. Without a `*/`, the comment extends to the end of
     /// the text.
@@ -150,9 +152,9 @@ impl<'s> Lexer<'s> {
         end
     }
 
-    /// Returns kind and end of the quoted text at `start`. The closing mark is searched for up to
-    /// the end of the line or a comment, since the grammar has no quotation marks. Without a
-    /// closing mark, the token is the opening mark and the word after it.
+    /// Returns kind and end of the quoted text at `start`. If no closing mark follows before the
+    /// end of the line or before a comment, the token is only the opening mark and the word
+    /// directly after it.
     fn quoted(&self, start: usize) -> (TokenKind, usize) {
         let mut characters = self.rest(start).char_indices().peekable();
         let first = characters.next().map_or('"', |(_, first)| first);
@@ -236,7 +238,7 @@ pub fn numeric_part(written: &str) -> &str {
 
 /// Returns whether a name occurs in a text outside its comments.
 pub fn has_name(text: &str, name: &str) -> bool {
-    // Most texts do not contain the name at all. For these, the lexer does not run.
+    // Most texts do not contain the name at all. The lexer runs only on the other texts.
     let mut lexer = Lexer::new(text, 0);
     text.contains(name)
         && loop {

@@ -80,7 +80,8 @@ pub struct Block<'s> {
     pub kind: Option<Name<'s>>,
     /// The name of the object, if it has one.
     pub name: Option<Name<'s>>,
-    /// The indices of a repeated object. Few blocks have any, so they are boxed.
+    /// The indices of a repeated object. Few blocks have indices, so they are boxed to keep the
+    /// other blocks small.
     pub repetition: Option<Box<Repetition<'s>>>,
     /// The place of `{`; `None` if it is missing.
     pub open: Option<Span>,
@@ -178,7 +179,7 @@ pub struct Field<'s> {
 /// A value with its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Value<'s> {
-    /// The value's form.
+    /// The form of the value, such as a number, a name or a call.
     pub kind: ValueKind<'s>,
     /// The value's place in the text.
     pub span: Span,
@@ -222,12 +223,12 @@ pub enum ValueKind<'s> {
     ColorCode(&'s str),
     /// A name.
     Name(&'s str),
-    /// A call: `FUNCTION(ARGUMENT, …)`. It is boxed because it would double the size of every
-    /// value.
+    /// A call: `FUNCTION(ARGUMENT, …)`. It is boxed, because otherwise it would double the size of
+    /// every value.
     Call(Box<Call<'s>>),
     /// A value in parentheses: `(VALUE)`.
     Parentheses(Box<Value<'s>>),
-    /// A list in parentheses, `(VALUE, VALUE, …)`, with two or more values or none.
+    /// A list in parentheses, `(VALUE, VALUE, …)`, with at least two values, or `()`.
     Tuple(Vec<Element<'s>>),
     /// A negation: `-VALUE`.
     Negation {
@@ -245,8 +246,8 @@ pub enum ValueKind<'s> {
         /// The operators and their right operands, in order.
         rest: Vec<Step<'s>>,
     },
-    /// A missing value after a field's name. It is reported later, when the fields of the block are
-    /// known: the value may be missing, or the name may have been meant as a value.
+    /// A missing value after a field's name. The parser does not report it, since it does not know
+    /// which names are fields: either the value is missing, or the name was meant as a value.
     Missing,
     /// Text that was not understood; a problem was reported for it.
     Bad,

@@ -19,7 +19,8 @@ const FOREIGN_FUNCTIONS: &str = "vec vec3 Vec3 vector Vector vector3 Vector3 Vec
 #[derive(Debug)]
 pub struct Vocabulary<'s> {
     text: &'s str,
-    /// Defined names, each with `true` if it surely is a number; computed on first use.
+    /// The names that the text defines. A name is mapped to `true` if it probably stands for a
+    /// number. The map is computed on first use.
     lets: OnceLock<HashMap<&'s str, bool>>,
 }
 
@@ -68,13 +69,14 @@ impl<'s> Vocabulary<'s> {
         self.lets().contains_key(name)
     }
 
-    /// Returns the names of definitions and indices. The value is `true` if the name surely is a
-    /// number: an index, or a definition that starts with a number without a unit.
+    /// Returns the names of definitions and indices. A name is mapped to `true` if it probably
+    /// stands for a number: it is an index, or its definition starts with a number without a unit.
     fn lets(&self) -> &HashMap<&'s str, bool> {
         self.lets.get_or_init(|| {
             let mut lets = HashMap::new();
             let mut lexer = Lexer::new(self.text, 0);
-            // The last three tokens, comments left out.
+            // The last three tokens that are not comments. They suffice to recognize a definition
+            // or an index.
             let mut last = ["", "", ""];
             loop {
                 let token = lexer.token();
@@ -110,8 +112,8 @@ impl<'s> Vocabulary<'s> {
         schema::css::color(name).is_some()
     }
 
-    /// Returns whether a name surely stands for a number: pi, an index, or a name that is defined
-    /// as a number.
+    /// Returns whether a name probably stands for a number: it is `pi`, an index, or a name whose
+    /// definition starts with a number without a unit.
     pub fn is_factor(&self, name: &str) -> bool {
         name == "pi" || self.lets().get(name).copied().unwrap_or(false)
     }
@@ -121,9 +123,9 @@ impl<'s> Vocabulary<'s> {
         FOREIGN_FUNCTIONS.split(' ').any(|word| word == name) && !self.is_let(name)
     }
 
-    /// Returns whether a field that follows the grammar was perhaps meant otherwise: the block
-    /// `kind` has no such field, the value is the name of a field, or the field takes the name of a
-    /// method and its value is something else.
+    /// Returns whether a field that follows the grammar was perhaps meant otherwise. This is the
+    /// case if the block `kind` has no such field, if the value is the name of another field, or if
+    /// the field requires the name of a method and its value is not a name.
     pub fn is_doubtful(&self, kind: &str, field: &Field<'_>) -> bool {
         let row = schema::block_or_nearest(kind);
         let takes = row.and_then(|row| Some(row.field(field.name.text)?.takes));

@@ -20,26 +20,28 @@ use crate::{
 /// Bounds of an object as seen from the eye.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
-    /// Ranges of the components X (to the right) and Y (down) of a ray's direction in which rays
-    /// may hit the object.
+    /// Ranges of X and Y, the components of a ray's direction to the right and down. A ray whose X
+    /// or Y is outside of its range misses the object.
     pub across: [Interval; 2],
     /// Upper bound of the inverse depths of the object's points.
     pub nearest: f64,
 }
 
-/// Fraction of its value by which a computed bound of an object is widened: 2^−40. It is far more
-/// than the few rounding errors of such a bound, about 2^−50, so that the bound is certainly not
-/// too tight.
+/// Relative amount by which each computed bound of an object is widened: 2^−40. The bound's own
+/// rounding errors are much smaller, about 2^−50 of its value. The widened bound is therefore
+/// certainly not too tight.
 const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Minimum of the lengths and products of lengths from which an object's bounds are computed. If
-/// one is smaller, the object counts as unbounded. A number of at least this size has rounding
-/// errors of 2^−53 of itself, because it is far above 1e-308, below which `f64` loses digits.
+/// Minimum size of the numbers from which an object's bounds are computed, such as lengths and
+/// products of two lengths. If one is smaller, the object is treated as unbounded. `f64` loses
+/// digits below 1e-308. From 1e-280 on, a result certainly has its full relative precision of
+/// 2^−53.
 const SMALLEST: f64 = 1e-280;
 
 impl Object<f64> {
-    /// Prepares an object, or only the face `face` of a box. Returns the object with its bounds, or
-    /// with `None` instead of them if the object is certainly not seen in the camera's window.
+    /// Prepares an object, or only face number `face` of a box, and computes its bounds as seen
+    /// from the eye. The bounds are `None` if the object is certainly not seen in the camera's
+    /// window.
     pub fn with_extent(
         double: &Camera<Double>,
         fast: &Camera<f64>,
@@ -47,7 +49,8 @@ impl Object<f64> {
         face: Option<u8>,
     ) -> (Self, Option<Extent>) {
         let (object, corners) = if let Shape::Triangle(shape) = shape {
-            // Preparing a triangle also computes its corners.
+            // A triangle's bounds are computed from its corners, which its preparation returns as
+            // well.
             let (triangle, corners) = triangle::prepare(double, shape).unzip();
             (
                 Object::Convex(triangle.unwrap_or_else(Convex::nothing)),
@@ -59,14 +62,15 @@ impl Object<f64> {
         let object = object.narrowed(&fast.window);
         let ahead = fast.window.z;
         let hull = match (&object, shape.cuboid(), corners) {
-            // In an extremely wide view, the component Z (`ahead`) of all rays' directions is so
-            // small that products with it may underflow and lose digits.
+            // In an extremely wide view, the component Z (`ahead`) of all rays' directions is very
+            // small. Products with it may underflow and lose digits, so the object is treated as
+            // unbounded.
             _ if ahead < SMALLEST => Hull::Unbounded,
             (Self::Sphere(sphere), ..) => of_sphere(sphere, ahead),
             (_, Some(cuboid), _) => of_corners(&cuboid::corners(fast, cuboid), ahead),
             (_, None, Some(corners)) => of_corners(&corners, ahead),
-            // Other kinds of objects have no convex hull to bound. They get the whole window as
-            // bounds, and only their depth is limited.
+            // A checkerboard is infinite, and a triangle seen edge-on has no corners here. Their
+            // bounds are the whole view plane, and only their inverse depth is limited.
             (_, None, None) => Hull::Unbounded,
         };
         let extent = match hull {

@@ -21,7 +21,8 @@ pub struct Basis {
     pub u: [Big; 3],
     /// Unit vector to the picture's top.
     pub v: [Big; 3],
-    /// Unit vector against the view direction.
+    /// Side of a pixel at depth 1: view_height/(height · d). The view plane is `view_height` high
+    /// and has the distance d from the eye; the picture is `height` pixels high.
     pub w: [Big; 3],
     /// Side of a pixel at depth 1: view_height/(height · d), with the picture's height in pixels
     /// and the distance d of the view plane.
@@ -132,7 +133,8 @@ pub struct Camera<T: Real> {
     pub exponent: i32,
     /// Unit vectors to the right, down and ahead, in world coordinates.
     pub axes: [Ball3<T>; 3],
-    /// Side of a pixel, in the unit of X and Y, the first two components of a [`Direction`].
+    /// Distance between the centres of neighbouring pixels, as a difference of X or Y, the first
+    /// two components of a [`Direction`].
     pub pitch: T,
     /// Component Z of all [`Direction`]s.
     pub z: T,
@@ -143,7 +145,7 @@ pub struct Camera<T: Real> {
 }
 
 /// A ray's direction (X, Y, Z) in the camera's axes, and its squared length. The relative errors of
-/// X and Y are at most 5 · [`UNIT`](Real::UNIT).
+/// X and Y are at most 5 · [`UNIT`](Real::UNIT), i.e. five times the error of one operation.
 #[derive(Clone, Debug)]
 pub struct Direction<T> {
     /// Component X of the direction, to the right.
@@ -157,8 +159,8 @@ pub struct Direction<T> {
 }
 
 /// A point of the picture, in pixels from its centre, x to the right and y down. Each coordinate is
-/// the exact sum of two numbers, since the sum of a pixel's centre and an offset from it need not
-/// be an `f64`.
+/// stored as two numbers whose exact sum it is. The reason is that a pixel's centre plus an offset
+/// may have too many digits for one `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PicturePoint {
     /// The coordinate x, as two summands.
@@ -206,7 +208,8 @@ impl<T: Real> Camera<T> {
     /// row `y`.
     #[inline]
     pub fn sample_point(&self, x: u32, y: u32, offset: DVec2) -> PicturePoint {
-        // The coordinates of pixels' centres are half-integers below 2^21, which are exact.
+        // The coordinates of pixel centres are multiples of 1/2 below 2^21, which `f64` represents
+        // exactly.
         PicturePoint {
             x: (f64::from(x) + 0.5 - self.half.x, offset.x),
             y: (f64::from(y) + 0.5 - self.half.y, offset.y),
@@ -222,8 +225,8 @@ impl<T: Real> Camera<T> {
         ))
     }
 
-    /// Converts a point that is given in pixels from the picture's top left corner, x to the right
-    /// and y down.
+    /// Converts a point from pixels relative to the picture's top left corner to pixels relative to
+    /// its centre. In `pixels`, x is to the right and y down.
     pub fn picture_point(&self, pixels: DVec2) -> PicturePoint {
         PicturePoint {
             x: (pixels.x, -self.half.x),
@@ -256,8 +259,9 @@ impl<T: Real> Camera<T> {
         [0, 1, 2].map(|axis| self.relative_coordinate(axis, point[axis]))
     }
 
-    /// Returns the difference point − eye in the coordinate number `axis` of the world, multiplied
-    /// by 2 to the power [`exponent`](Camera::exponent). `at` is the point's coordinate.
+    /// Returns one world coordinate of point − eye, multiplied by 2 to the power
+    /// [`exponent`](Camera::exponent). `axis` is 0 for x, 1 for y and 2 for z; `at` is the point's
+    /// coordinate.
     pub fn relative_coordinate(&self, axis: usize, at: f64) -> Ball<T> {
         Ball::difference(at, self.eye[axis]).scaled(self.exponent)
     }

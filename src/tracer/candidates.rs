@@ -29,8 +29,8 @@ pub struct VisibilityCandidate {
     /// Whether every ray through the part of the picture hits the object between the near and the
     /// far plane.
     pub is_whole: bool,
-    /// Interval that contains the inverse depths of everything that may be seen of the object. An
-    /// inverse depth is a constant of the camera divided by the depth.
+    /// Interval that contains the inverse depths of all points of the object that may be visible.
+    /// An inverse depth is a constant of the camera divided by the depth.
     pub(crate) inverse_depth: Interval,
     /// Which of a ray's crossings with the object may be seen: only the first one, unless the near
     /// plane may cut the object.
@@ -61,10 +61,11 @@ pub fn narrowed(
     visible_of(world, &patch, objects, out);
 }
 
-/// Replaces `out` by all objects that may be seen in the area `part`, in file order. Returns
-/// `false`, and leaves `out` unchanged, if the quadtree lists too many objects, certainly more than
-/// `most`, or if `is_worth` returns `false`. `is_worth` is called with the number of objects, and
-/// with the mean number of objects whose bounds contain a ray through the area.
+/// Replaces `out` by all objects that may be seen in the area `part`, in file order.
+///
+/// Returns `false` and leaves `out` unchanged if certainly more than `most` objects have bounds
+/// that meet the area, or if `is_worth` returns `false`. The arguments of `is_worth` are the number
+/// of objects found and the mean number of objects whose bounds contain a ray through the area.
 #[must_use]
 pub fn within(
     world: &World,
@@ -118,7 +119,7 @@ pub(crate) fn visible_among(
 }
 
 /// Replaces `out` by the objects in `among` that may be seen in the rectangle `patch` of the view
-/// plane. Both lists are in file order; `among` has each object's bounds as well.
+/// plane. Both lists are in file order. `among` contains the index and the bounds of each object.
 fn visible_of(
     world: &World,
     patch: &Patch,
@@ -149,9 +150,10 @@ fn visible_of(
     }
 }
 
-/// Returns the object with the index `index`, classified by how it is seen in the rectangle `patch`
-/// of the view plane. `near` and `far` are the ranges of the inverse depths of the near and the far
-/// plane over the rectangle. Returns `None` if the object is certainly not seen there.
+/// Finds out how the object with the index `index` is seen in the rectangle `patch` of the view
+/// plane, for example whether it fills the rectangle. `near` and `far` are the ranges of the
+/// inverse depths of the near and the far plane over the rectangle. Returns `None` if the object is
+/// certainly not seen in the rectangle.
 pub(super) fn cover(
     world: &World,
     index: usize,
@@ -235,8 +237,8 @@ pub(crate) fn covers(world: &World, front: usize, back: usize, patch: &Patch) ->
     let ahead = |i: usize, j: usize| {
         let (front_face, back_face) = (&a.firsts()[i], &b.firsts()[j]);
         front_face.minus(back_face).over(patch).low > 0.0
-            // Planes whose forms differ in `f64` are certainly not the same, so that the exact test
-            // is not needed.
+            // The slow exact test is skipped if the planes' linear forms differ in `f64`, because
+            // the planes are then certainly different.
             || front < back && front_face.equals(back_face) && {
                 let parts = ((front, a.part(i)), (back, b.part(j)));
                 depth_order::is_one_plane(&world.geometry, parts.0, parts.1)
@@ -258,8 +260,8 @@ pub(crate) fn covers(world: &World, front: usize, back: usize, patch: &Patch) ->
 }
 
 /// Returns which of the candidates is seen at the point `at` of a sub-pixel (`None` for the
-/// background), and whether the answer is certain. If not, it was decided in the highest precision,
-/// where inverse depths that cannot be distinguished count as equal.
+/// background), and whether the answer is certain. An uncertain answer was decided in the highest
+/// precision, where inverse depths that cannot be distinguished are treated as equal.
 pub fn object_at<'a>(
     world: &World,
     sub_pixel: SubPixel,

@@ -3,11 +3,12 @@
 //! In: a block of pixels in which only one board is seen. Out: runs of pixels that show one colour,
 //! and for every other pixel the squares that it shows.
 //!
-//! Where only a board is seen, quartering mostly ends at single pixels, and neighbouring pixels
-//! share corners. The squares that contain the corners of a block's pixels are therefore computed
-//! row by row in plain arrays, which the compiler vectorizes. A ratio of linear forms takes its
-//! extremes at corners. If all corners of a pixel lie in one square, farther from the square's
-//! edges than the error bound, the pixel therefore shows only this square.
+//! The picture is divided recursively into quarters. Where only a board is seen, the division
+//! mostly ends at single pixels, and neighbouring pixels share corners. The squares that contain
+//! the corners of a block's pixels are therefore computed row by row in plain arrays, which the
+//! compiler vectorizes. Over a pixel, a ratio of linear forms takes its extremes at the pixel's
+//! corners. A pixel therefore shows only one square if all its corners lie in this square, farther
+//! from the square's edges than the error bound.
 
 use std::{array, ops::ControlFlow};
 
@@ -24,28 +25,29 @@ use crate::{
     math::{Double, ROUND, Real, UP, floor},
 };
 
-/// Minimum ratio of ℓ to its error bound f, where ℓ is the denominator of a board coordinate N/ℓ, a
-/// quotient of linear forms. With a smaller ratio, the coordinate's error counts as unbounded.
+/// Minimum ratio of a denominator ℓ to its error bound f. The denominator is that of a board
+/// coordinate N/ℓ, a quotient of linear forms. If the ratio is smaller, the coordinate's error is
+/// treated as unbounded.
 ///
-/// With e the error bound of N, (N ± e)/(ℓ ± f) differs from N/ℓ by at most 4/3 · (e + f·|N/ℓ|)/ℓ
-/// for ratios from 4 on. The error bound of the coordinate uses the factor 4 instead of 4/3, which
-/// leaves a margin.
+/// Let e be the error bound of N. If the ratio is at least 4, (N ± e)/(ℓ ± f) differs from N/ℓ by
+/// at most 4/3 · (e + f·|N/ℓ|)/ℓ. The code uses the factor 4 instead of 4/3, which leaves a margin.
 const MIN_CLEARANCE: f64 = 4.0;
 
-/// Maximum error of a board coordinate, in squares, at which the squares that a pixel shows are
-/// computed from the coordinates of its corners. With an error of 1/4, the square at a corner is
-/// certain only if the corner lies in the middle half of the square's width. With a larger error,
-/// few squares would be certain.
+/// Maximum error of a board coordinate, in squares. If the error is larger, the squares in a pixel
+/// are not derived from the coordinates of its corners. With an error of 1/4, the square at a
+/// corner is certain only if the corner lies in the middle half of the square's width. With a
+/// larger error, few squares would be certain.
 const MAX_ERROR: f64 = 0.25;
 
-/// Maximum side of a block of pixels at whose corners a board's squares are computed together, in
-/// pixels. It is also the side of the areas with which quartering begins, and must therefore be a
-/// power of two. A smaller block would compute more corners per pixel, because a block of n² pixels
-/// has (n + 1)² corners. A larger block would need larger arrays.
+/// Maximum side of a block of pixels, in pixels. The checkerboard squares at all pixel corners of a
+/// block are computed together. The picture is first divided into blocks of this side, which are
+/// then quartered recursively, so the side is a power of two. A smaller block would compute more
+/// corners per pixel, because a block of n² pixels has (n + 1)² corners. A larger block would need
+/// larger arrays.
 pub(super) const SIDE: usize = 32;
 
-/// Number of entries for the pixel corners in a row of a block of pixels. The row has 33 corners,
-/// which are rounded up to whole vectors of eight.
+/// Number of array entries for one row of pixel corners in a block. A block of 32 pixels has 33
+/// corners in a row, which are rounded up to whole vectors of eight.
 const LANES: usize = 40;
 
 /// The squares of a board in one pixel, derived from the squares at the pixel's corners.
@@ -56,8 +58,8 @@ pub struct CheckerPixel {
     /// corners is top left, top right, bottom left, bottom right.
     pub(crate) corners: [[f64; 4]; 2],
     /// Whether the pixel's corners certainly lie in the squares `corners`. If not, a corner may lie
-    /// in a neighbouring square, but then it is no farther from the line between both squares than
-    /// the error bounds of `squares`.
+    /// in a neighbouring square. The error bounds of `squares` are then widened to at least the
+    /// corner's distance from the line between the two squares.
     pub(crate) is_certain: bool,
 }
 
@@ -85,18 +87,20 @@ struct CornerRow {
 /// What a run of pixels, or one pixel, shows of a checkerboard.
 #[derive(Clone, Copy, Debug)]
 pub enum ShownSquares<'a> {
-    /// A run of pixels that show one colour; `true` if it is the second colour.
+    /// A run of pixels that show one colour; `true` for the second colour.
     One(bool),
-    /// A few squares, in one pixel.
+    /// One pixel, with the squares that it may show.
     Squares(&'a CheckerPixel),
     /// One pixel whose squares could not be determined.
     Unknown,
 }
 
 /// Calls `each` with every run of pixels of `part` that shows one colour of the checkerboard
-/// `object`, and with every other pixel. Only the board may be seen in `part`, whose sides are at
-/// most [`SIDE`] pixels. Returns `None` if the object is not a checkerboard, or if the board is too
-/// far away for its squares to be distinguished. Otherwise, returns `Break` if `each` did.
+/// `object`, and with every other pixel, until `each` returns `Break`. Only the board may be seen
+/// in `part`, whose sides are at most [`SIDE`] pixels.
+///
+/// Returns `None` if the object is not a checkerboard, or if the board is too far away for its
+/// squares to be distinguished. Otherwise, returns the last result of `each`.
 pub fn show(
     world: &World,
     part: Area,
@@ -241,9 +245,9 @@ impl BoardBlock {
         ControlFlow::Continue(())
     }
 
-    /// Returns the squares in which the pixel's corners lie. They are uncertain (`is_certain` is
-    /// `false`) if a corner is too close to a line. Returns `None` if the index of a square is not
-    /// finite.
+    /// Returns the squares in which the corners of a pixel lie. They are uncertain (`is_certain` is
+    /// `false`) if a corner is too close to a line between squares. Returns `None` if the index of
+    /// a square is not finite.
     fn checks(
         &self,
         row: u32,
@@ -269,8 +273,8 @@ impl BoardBlock {
         let [width, height] = [width, height].map(f64::from);
         let local = |block: &LocalForm| {
             let [a, b, c] = block.factors;
-            // The error bound of the block's form counts twice: once for the factors, and once for
-            // the value at the pixel's centre.
+            // The error bound of the block's form is doubled: it covers the error of the factors
+            // and the error of the value at the pixel's centre.
             LocalForm::new([a / width, b / height, a * x + b * y + c], 2.0 * block.rad)
         };
         let CheckerForms { across, below, odd } = &self.squares;
@@ -293,10 +297,10 @@ impl BoardBlock {
         })
     }
 
-    /// Replaces the index of each uncertain square (NaN) in `corners` by that of the square in
-    /// which the corner probably lies. Returns the squares, and for x and z the maximum distance,
-    /// in squares, between an uncertain corner and the nearest line. Returns `None` if a quotient
-    /// is not finite.
+    /// Replaces the index of each uncertain square (NaN) in `corners` by the index that follows
+    /// from the corner's computed position. Returns the squares and, for x and z, the maximum
+    /// distance, in squares, between an uncertain corner and the nearest line between squares.
+    /// Returns `None` if a quotient is not finite.
     #[cold]
     fn probable(
         &self,
@@ -312,8 +316,9 @@ impl BoardBlock {
                 if corner[axis].is_nan() {
                     corner[axis] =
                         floor(self.squares.across[axis].at(x, y) / self.squares.below.at(x, y));
-                    // The corner is uncertain, so its computed coordinate is within `slack` of a
-                    // line. The true coordinate is within `slack` of the computed one.
+                    // The corner is uncertain, so its computed coordinate is at most `slack` from a
+                    // line between squares. Its true coordinate is at most `slack` from the
+                    // computed one.
                     doubt[axis] = 2.0 * self.slack[axis];
                 }
             }
@@ -337,8 +342,9 @@ impl CheckerPixel {
     }
 }
 
-/// Returns the position `halves` half pixels from the left or top edge of a block that is `pixels`
-/// pixels long. The result is measured from the block's centre, in units of its side.
+/// Returns a position along a side of a block, measured from the side's middle in units of its
+/// length. The position is `halves` half pixels from the left or top end; the side's length is
+/// `pixels` pixels.
 fn middle(halves: u32, pixels: u32) -> f64 {
     (f64::from(halves) - f64::from(pixels)) / f64::from(2 * pixels)
 }
@@ -368,7 +374,7 @@ fn compare_simd(above: &CornerRow, below: &CornerRow, out: &mut [f64; SIDE]) {
 }
 
 /// The position on a checkerboard as ratios of linear forms: x = N₀/ℓ and z = N₁/ℓ, in squares. x
-/// and z rounded down are the indices of a square. `across` has N₀ and N₁, and `below` is ℓ.
+/// and z rounded down are the indices of a square. `across` contains N₀ and N₁, and `below` is ℓ.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CheckerForms {
     pub(crate) across: [LocalForm; 2],
@@ -431,6 +437,6 @@ impl CheckerForms {
 }
 
 pub(super) fn is_odd(whole: f64) -> bool {
-    // `ranges` returns only whole numbers far below 2^53, so that the conversion is exact.
+    // The index of a square is a whole number far below 2^53, so the conversion to `i64` is exact.
     whole as i64 & 1 == 1
 }

@@ -1,12 +1,14 @@
 //! The checkerboard: an infinite horizontal plane of squares.
 //!
 //! In: the board's height, the side of its squares, and the camera. Out: for a ray, its crossing
-//! and the colour there. Below the horizon, the plane's inverse depth ℓ is positive, and x/square
-//! is a ratio of linear forms, N/ℓ. N is measured from the line between squares that is nearest to
-//! the eye. Measured from the world's origin, N would lose its precision to the number of whole
-//! squares between origin and eye. Only the parity of this number matters, and it is stored
-//! separately. Errors are those of the forms; a ratio whose error interval contains a whole number
-//! leaves the colour in doubt.
+//! and the colour there. If the ray hits the plane, the plane's inverse depth ℓ is positive, and
+//! x/square is a ratio of linear forms, N/ℓ.
+//!
+//! N is measured from the line between squares that is nearest to the eye, not from the world's
+//! origin. The distance from the origin to this line would make N large and thus less precise. Only
+//! the parity of this distance in squares matters, and it is stored separately. The errors are
+//! those of the forms. If the error interval of a ratio contains a whole number, the colour is
+//! uncertain.
 
 use super::{
     camera::{Camera, Direction, Window},
@@ -18,10 +20,10 @@ use crate::{
     scene,
 };
 
-/// Maximum number of squares by which the origin of a board's coordinates is moved to the part of
-/// the board that a rectangle shows ([`Checkerboard::local`]). If the part is farther away, the
-/// origin is not moved: the number of squares is a rounded quotient, and above 2^52 it need not be
-/// the nearest whole number.
+/// Limit, in squares, below which the origin of a board's coordinates is moved.
+/// [`Checkerboard::local`] moves it to the part of the board that a rectangle shows. The distance
+/// is a rounded quotient. From 2^52 on, it need not be the nearest whole number, and its parity
+/// could be wrong.
 const MOST_SQUARES: f64 = (1u64 << 52) as f64;
 
 /// A checkerboard prepared for one picture.
@@ -37,26 +39,27 @@ pub struct Checkerboard<T: Real> {
     /// plane. N/ℓ, where ℓ is `below`, is the coordinate in squares, measured from the line between
     /// squares that is nearest to the eye.
     pub across: [Form<T>; 2],
-    /// Whether the two colours change places. The board's coordinates are measured from the two
-    /// lines that are nearest to the eye, one in x and one in z. The colours change places if the
-    /// sum of the numbers of these lines, counted from the world's origin, is odd.
+    /// Whether the square from (0, 0) to (1, 1) in the board's coordinates has the second colour.
+    /// The coordinates are measured from the two lines that are nearest to the eye, one in x and
+    /// one in z. The square has the second colour if the sum of these lines' numbers, counted from
+    /// the world's origin, is odd.
     pub odd: bool,
 }
 
 /// A checkerboard over a rectangle of the picture: a pixel, a part of one, or several pixels. A
-/// point (x, y) of the rectangle is measured from its centre, in units of its sides. Where ℓ > 0,
-/// it shows the point (N₀/ℓ, N₁/ℓ) of the board, measured in squares from a nearby corner of
-/// squares.
+/// point (x, y) of the rectangle is measured from the rectangle's centre, in units of its sides.
+/// The point shows the position (N₀/ℓ, N₁/ℓ) on the board, in squares from a nearby corner of
+/// squares. N₀, N₁ and ℓ are linear forms in x and y; the board is seen only if ℓ > 0.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalBoard {
-    /// Factors of x, y and 1 in the numerators N₀ and N₁ of the board's coordinates. In the highest
-    /// precision, numbers may exceed the range of `f64`. All forms are then scaled by one power of
-    /// two that brings the largest factor to about 1.
+    /// Factors of x, y and 1 in N₀ and N₁, the numerators of the board's coordinates N₀/ℓ and N₁/ℓ.
+    /// In the highest precision, factors may exceed the range of `f64`. N₀, N₁ and ℓ are then
+    /// multiplied by the same power of two, which brings the largest factor to about 1.
     pub across: [[f64; 3]; 2],
     /// Factors of x, y and 1 in ℓ, the denominator of the board's coordinates.
     pub below: [f64; 3],
-    /// Error bounds of the values of the numerators N₀ and N₁ and of the denominator ℓ of the
-    /// board's coordinates in the rectangle. The rounding of the factors to `f64` is not included.
+    /// Error bounds of N₀, N₁ and ℓ at all points of the rectangle. The board's coordinates are
+    /// N₀/ℓ and N₁/ℓ. The rounding of the factors to `f64` is not included.
     pub rads: [f64; 3],
     /// Whether the square from (0, 0) to (1, 1) in the board's coordinates has the second colour.
     pub odd: bool,
@@ -139,9 +142,9 @@ impl<T: Real> Checkerboard<T> {
             odd ^= times as i64 & 1 == 1;
             let multiple = T::from_f64(times);
             let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&multiple)));
-            // The error bound of the denominator ℓ covers at least 12 roundings. Twice the bound
-            // therefore also covers the roundings of the multiple of ℓ and of its difference from
-            // the numerator N₀ or N₁.
+            // The error bound `rad` of the denominator ℓ is at least 12 roundings of ℓ. It is
+            // doubled, so that it also covers the roundings of the multiple of ℓ and of the
+            // subtraction.
             (factors, own_rad + rad * (2.0 * times.abs()))
         });
         let mut forms = [a, b, (below, rad)];
@@ -188,7 +191,8 @@ impl EyeOffset {
     /// Splits a coordinate of the eye by the side `square` of the squares, without rounding.
     fn new(coordinate: f64, square: f64) -> Self {
         // The remainder operation of `f64` is exact, even with an infinite divisor. Differences of
-        // numbers within a factor of two of each other are exact, too (Sterbenz).
+        // numbers within a factor of two of each other are exact, too (Sterbenz). The result
+        // therefore has no rounding error.
         let mut rest = coordinate % (2.0 * square);
         let whole = match rest.abs() {
             size if size < square * 0.5 => 0,

@@ -1,12 +1,14 @@
 //! A convex object with flat faces: the geometry of a triangle, a box, or a checkerboard's plane.
 //!
 //! In: linear forms over the view plane. Out: the crossings of a ray; over a rectangle, the ranges
-//! of the crossings' inverse depths. A ray hits the object if no edge's form is negative: these are
+//! of the crossings' inverse depths.
+//!
+//! A ray hits the object if none of the edges' linear forms is negative at the ray. These forms are
 //! the edge functions of Olano and Greer ("Triangle scan conversion using 2D homogeneous
 //! coordinates", 1997). The ray enters through the farthest of the planes that the eye sees from
-//! outside, and leaves through the nearest of the other planes: the slabs of Kay and Kajiya ("Ray
-//! tracing complex scenes", 1986) in inverse depths, which are linear forms. Each form has its own
-//! error bound.
+//! outside, and leaves through the nearest of the other planes. This is the method of slabs of Kay
+//! and Kajiya ("Ray tracing complex scenes", 1986), applied to inverse depths, which are linear
+//! forms. Each form has its own error bound.
 
 use std::cmp::Ordering;
 
@@ -26,19 +28,20 @@ pub type Face<T> = (u8, Form<T>);
 #[derive(Clone, Debug)]
 pub struct Convex<T: Real> {
     /// Linear forms over the view plane in three groups. First come the forms that bound the
-    /// object, each ≥ 0 on the object's side. Then come the inverse depths of the faces that rays
-    /// hit first, and then those of the faces that rays hit behind them.
+    /// object, each ≥ 0 on the object's side. Then come the inverse depths of the faces where rays
+    /// first hit the object. The inverse depths of all other faces come last.
     forms: Vec<Form<T>>,
     /// Number of the forms that bound the object.
     edges: u8,
-    /// Index in `forms` of the first face that rays hit behind another one: the number of the
-    /// bounding forms plus the number of the faces that rays hit first.
+    /// Number of the forms that bound the object, plus the number of the faces where rays first hit
+    /// it. The sum is the index in `forms` of the first of the other faces.
     firsts: u8,
-    /// Number of each face's plane. The faces that rays hit first come before those behind them.
+    /// Number of each face's plane. The faces where rays first hit the object come before the other
+    /// faces.
     planes: [u8; 6],
-    /// Whether the eye is inside the object. A ray may cross the planes of several of the faces
-    /// that rays hit first. If the eye is inside, the nearest of these crossings lies on the
-    /// object; if it is outside, the farthest does.
+    /// Whether the eye is inside the object. If it is, a ray leaves the object at the nearest of
+    /// its crossings with the faces' planes. Otherwise, the ray enters the object at the farthest
+    /// of its crossings with the planes of the front faces.
     is_inside: bool,
 }
 
@@ -82,8 +85,7 @@ impl<T: Real> Convex<T> {
         &self.forms[usize::from(self.edges)..usize::from(self.firsts)]
     }
 
-    /// Returns the inverse depths of the faces through which rays that start outside leave the
-    /// object.
+    /// Returns the inverse depths of the faces where rays from outside leave the object.
     pub fn seconds(&self) -> &[Form<T>] {
         &self.forms[usize::from(self.firsts)..]
     }
@@ -97,15 +99,14 @@ impl<T: Real> Convex<T> {
         &self.forms[..usize::from(self.firsts)]
     }
 
-    /// Returns whether the eye is inside the object. Of the ray's crossings with the planes of
-    /// [`firsts`](Self::firsts), the nearest then lies on the object; from outside, the farthest
-    /// does.
+    /// Returns whether the eye is inside the object. If it is, a ray hits the object at the nearest
+    /// of its crossings with the planes of [`firsts`](Self::firsts); otherwise, at the farthest.
     pub fn is_inside(&self) -> bool {
         self.is_inside
     }
 
-    /// Returns the face with the index `face` as a part of the object's surface. The faces that
-    /// rays hit first are counted before those that rays hit behind them.
+    /// Returns the face with the index `face` as a part of the object's surface. Faces where rays
+    /// first hit the object have lower indices than the other faces.
     pub fn part(&self, face: usize) -> SurfacePart {
         SurfacePart::Plane(self.planes[face])
     }
@@ -121,8 +122,9 @@ impl<T: Real> Convex<T> {
     /// inside, leaves it. Returns `None` if the ray misses the object. A ray on an edge hits it.
     #[inline]
     pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
-        // In the highest precision, all edges' forms may be 0. The object is then too small, or too
-        // nearly edge-on, to be distinguished from nothing, and the ray misses it.
+        // In the highest precision, the values of all edge functions may be 0. The object is then
+        // too small, or too nearly edge-on, to be distinguished from nothing, and the ray misses
+        // it.
         let (mut doubt, mut is_met) = (false, self.is_inside || self.edges == 0);
         for edge in self.edges() {
             match edge.at(r).sign() {
@@ -150,8 +152,8 @@ impl<T: Real> Convex<T> {
         Ok(is_met.then_some(crossing))
     }
 
-    /// Returns the ray's crossing with the object behind the first one. The ray must hit the
-    /// object. Returns `None` if rays hit the object only once.
+    /// Returns the second crossing of the ray with the object, where the ray leaves it. The ray
+    /// must hit the object. Returns `None` if rays hit the object only once.
     pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
         self.extreme(self.firsts().len(), self.seconds(), r, Ordering::Greater)
     }
@@ -183,12 +185,12 @@ impl<T: Real> Convex<T> {
             if !difference.is_zero() && difference.is_negative() == which.is_lt() {
                 extreme = other;
             }
-            // If an overflow has left NaN, the comparison fails, and the difference does not count
-            // as clear.
+            // If an overflow has left NaN, the comparison fails, and the difference is treated as
+            // unclear.
             let is_clear = distance > rad * (2.0 * UP);
             if !is_clear {
-                // The crossing cannot be assigned to one plane: just outside of an edge, a ray
-                // hits one plane slightly before it hits the box in the other.
+                // The crossing cannot be assigned to one plane: near an edge, the ray crosses two
+                // planes at almost the same depth.
                 extreme.part = SurfacePart::Edge;
                 let is_number = distance >= T::Radius::ZERO;
                 extreme.inverse_depth.rad = if is_number { rad } else { T::Radius::INFINITE };
@@ -219,8 +221,8 @@ impl Convex<f64> {
         })
     }
 
-    /// Returns the range of the inverse depths at which rays that start outside leave the object.
-    /// Returns `None` if rays hit the object only once.
+    /// Returns the range of the inverse depths at which rays from outside leave the object. Returns
+    /// `None` if rays hit the object only once.
     pub fn behind(&self, patch: &Patch) -> Option<Interval> {
         let faces = self.seconds().iter().map(|face| face.over(patch));
         Interval::fold(faces, f64::max)

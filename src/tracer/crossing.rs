@@ -20,8 +20,8 @@ pub enum SurfacePart {
     Entry,
     /// The side of a sphere where a ray leaves.
     Exit,
-    /// The plane of a flat object: of a triangle, of the checkerboard, or of the face of a box with
-    /// this number.
+    /// The plane of a triangle, of a checkerboard, or of a box's face. The field is the number of
+    /// the face; it is 0 for a triangle or a checkerboard.
     Plane(u8),
     /// An edge of a box, or a point so close to an edge that the precision in use cannot decide
     /// between the planes of its faces.

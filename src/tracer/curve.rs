@@ -1,22 +1,24 @@
 //! The curves that separate what is seen in a pixel, or in a part of one: lines and conics.
 //!
 //! In: the surfaces of objects in one precision, and a [`SubPixel`]. Out: the objects' silhouettes,
-//! and the curves where their depths are equal, in the coordinates of the sub-pixel. The silhouette
-//! of a sphere is Q = 0 (`sphere`). Two planes have equal inverse depths on a line. A plane and a
-//! sphere have equal inverse depths on the cone of rays through a circle. Two spheres have equal
-//! inverse depths in their radical plane. Errors: each form is computed anew in the sub-pixel's
-//! coordinates and in high precision, with an error bound for its values there. The result is
-//! therefore right to the last bits of an `f64`, however far the sub-pixel is from the picture's
-//! centre.
+//! and the curves where their depths are equal, in the coordinates of the sub-pixel.
+//!
+//! The silhouette of a sphere is a conic. Two planes have equal inverse depths on a line. A plane
+//! and a sphere have equal inverse depths on the cone of rays through a circle. Two spheres have
+//! equal inverse depths in their radical plane.
+//!
+//! Each form is computed anew in the sub-pixel's coordinates and in high precision, with an error
+//! bound for its values there. The result is therefore right to the last bits of an `f64`, however
+//! far the sub-pixel is from the picture's centre.
 
 use crate::math::{Ball, Ball3, Double, Radius, Real};
 
 use super::{camera::Camera, form::Form, interval::Interval, sphere::Sphere, sub_pixel::SubPixel};
 
-/// Minimum error bound of a boundary line ([`BoundaryLine::rad`]) at which the line is computed
-/// again in a higher precision than double-double. The value is eight unit roundoffs of `f64`. A
-/// much smaller one would be useless, because storing the line's factors as `f64` alone causes an
-/// error of three unit roundoffs.
+/// Minimum error bound ([`BoundaryLine::rad`]) at which a boundary line is computed again, in a
+/// higher precision than double-double. The value is eight unit roundoffs of `f64`. A much smaller
+/// one would be useless, because storing the line's factors as `f64` alone causes an error of three
+/// unit roundoffs.
 pub(crate) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
 /// A curve that separates what is seen in a pixel.
@@ -77,7 +79,8 @@ type Quadratic<T> = [Ball<T>; 6];
 pub struct SubPixelFrame<T: Real> {
     /// The direction (X, Y, Z) through the sub-pixel's centre.
     center: Ball3<T>,
-    /// Side of the sub-pixel, in the unit of the components X and Y of a ray's direction.
+    /// Side of the sub-pixel, as a difference of X or Y, the first two components of a ray's
+    /// direction.
     pitch: Ball<T>,
 }
 
@@ -85,7 +88,8 @@ impl<T: Real> SubPixelFrame<T> {
     /// Places a sub-pixel in the view plane of a camera.
     pub fn new(camera: &Camera<T>, sub_pixel: SubPixel) -> Self {
         let r = sub_pixel.middle(camera);
-        // A coordinate of the direction has five roundings, and the side fewer.
+        // A coordinate of the direction has five roundings, and the side has fewer. An error bound
+        // of eight roundings therefore covers them.
         let ball = |mid: T| Ball {
             rad: mid.magnitude() * (8.0 * T::UNIT) + T::TINY,
             mid,
@@ -110,17 +114,18 @@ impl<T: Real> SubPixelFrame<T> {
         ([a, b, middle], form.rad())
     }
 
-    /// Returns the silhouette of a sphere: the conic on which rays touch it. If the eye is on the
-    /// sphere's surface, returns instead the line that separates the rays into the sphere from the
-    /// others. If the eye is outside, also returns the line on which rays are perpendicular to the
-    /// direction of the centre.
+    /// Returns the silhouette of a sphere: the conic on which rays touch it. If the eye is outside
+    /// of the sphere, also returns the line on which rays are perpendicular to the direction of the
+    /// centre. If the eye is on the sphere's surface, returns only this line, which separates the
+    /// rays that enter the sphere from all other rays.
     pub fn silhouette(&self, sphere: &Sphere<T>) -> Vec<Boundary> {
         // The conic is Q = R² r·r − |c × r|² = 0, where c is the centre, R the radius and r the
         // ray's direction. The line is c·r = 0.
         //
-        // If the eye is outside, no ray on the line hits the sphere, but the line separates the
-        // conic's two branches, in front of the eye and behind it. If the sphere is almost a plane,
-        // to a part in 1e200, no precision distinguishes the two branches.
+        // If the eye is outside, the conic has two branches, one in front of the eye and one behind
+        // it. The line lies between the branches, and no ray on the line hits the sphere. If the
+        // sphere is a plane to a relative precision of about 1e-200, no precision distinguishes the
+        // two branches.
         let (c, square) = sphere.parts();
         let ahead = || line_of(&self.along(&c));
         if sphere.is_at_eye() {
@@ -147,9 +152,9 @@ impl<T: Real> SubPixelFrame<T> {
             | (InverseDepth::Sphere(sphere), InverseDepth::Plane(plane)) => {
                 let (c, square) = sphere.parts();
                 let (factors, rad) = self.local(plane);
-                // The factors of the plane are converted to the sphere's unit of inverse depth. The
-                // sphere's scale is within the range of `f64`; the inverse of the scale need not
-                // be.
+                // The factors of the plane are converted to the sphere's unit of inverse depth.
+                // This is done by their exponents, because the inverse of the sphere's scale may
+                // exceed the range of `f64`.
                 let exponent = -(libm::frexp(sphere.scale()).1 - 1);
                 let linear = factors.map(|mid| Ball { mid, rad }.scaled(exponent));
                 Some(self.circle(&c, &square, &linear, &Ball::exact(1.0)))
@@ -237,7 +242,8 @@ fn line_of<T: Real>(linear: &Linear<T>) -> Boundary {
 fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let [a, b, _] = factors;
     let greatest = if a.magnitude() < b.magnitude() { b } else { a };
-    // A form without slope is zero on no line, so that its scale does not matter.
+    // If the form has no slope, it is constant and has no zero line. Its scale then does not
+    // matter.
     let exponent = -greatest.magnitude().exponent();
     let greatest = greatest.scaled(exponent);
     let slope = if greatest.is_zero() {
@@ -309,10 +315,11 @@ impl Conic {
         // - For an ellipse, 2πε/√(AC − B²), the difference of two ellipses' areas. A, B and C are
         //   the factors of x², 2xy and y².
         // - In any case, 4 · 2 · √(ε/(greatest |F|)), by the inequality of Brudnyi and Ganzburg
-        //   (1973) for polynomials of degree 2 on a convex set of area 1 in the plane. The greatest
-        //   |F| is at least 1/16: some factor is at least 1/2, and each factor is a combination of
-        //   values of F. The factor A combines three values with the weights 2, 4 and 2, and the
-        //   other factors fewer.
+        //   (1973) for polynomials of degree 2 on a convex set of area 1 in the plane.
+        //
+        // In the last bound, the greatest |F| is at least 1/16. The reason is that some factor is
+        // at least 1/2, and that a factor is at most 8 times the greatest |F|. For example, A is a
+        // combination of three values of F with weights of the magnitudes 2, 4 and 2.
         let [a, b, c, d, e, _] = self.factors.map(|factor| factor.hi);
         let turn = libm::hypot(a.abs() + b.abs(), b.abs() + c.abs());
         let gradient = 2.0 * (libm::hypot(d, e) - 0.5 * turn);
@@ -321,7 +328,8 @@ impl Conic {
         if gradient > 0.0 {
             area = area.min(16.0 * self.rad / gradient);
         }
-        // The rounding errors of the determinant are at most two roundings of its products.
+        // The rounding errors of the determinant are subtracted, so that the bound is certainly
+        // large enough. They are at most two roundings of its products.
         let determinant = determinant - 4.0 * f64::UNIT * (a * c).abs().max(b * b);
         if determinant > 0.0 {
             area = area.min(7.0 * self.rad / determinant.sqrt());

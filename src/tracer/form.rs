@@ -85,8 +85,9 @@ impl<T: Real> Form<T> {
             // The bound of the rounding errors of the difference assumes that |X|, |Y| and Z are at
             // most 1.
             rad: (self.rad + other.rad + sum * (FORM_ROUNDINGS * T::UNIT)) * UP,
-            // The error bounds of a form contain the rounding errors of its factors. Twice the sum
-            // of the two forms' bounds therefore also covers the rounding errors of the difference.
+            // The sum of the two forms' error bounds is doubled. It contains the rounding errors of
+            // both forms' factors, so that its double also covers the rounding of the factors'
+            // differences.
             rads: self
                 .rads
                 .as_ref()
@@ -121,8 +122,8 @@ fn rounding<T: Real>(factors: &[T; 3], window: &Window<T::Radius>) -> T::Radius 
     let [a, b, c] = factors.each_ref().map(Real::magnitude);
     (a * window.x + b * window.y + c) * (FORM_ROUNDINGS * T::UNIT)
         + T::TINY * (a + b)
-        // Each of fewer than 16 products may be below the normal numbers. The product then has an
-        // error of at most half of the least positive number.
+        // A value is computed from fewer than 16 products. If a product is below the normal
+        // numbers, its error is at most half of the least positive number.
         + T::TINY * 8.0
 }
 

@@ -69,7 +69,7 @@ impl Interval {
         }
     }
 
-    /// Returns whether 0 may lie in the interval. An end that is NaN counts as unlimited.
+    /// Returns whether 0 may lie in the interval. An end that is NaN is treated as infinite.
     pub fn holds_zero(self) -> bool {
         !(self.low > 0.0 || self.high < 0.0)
     }
@@ -78,8 +78,8 @@ impl Interval {
     /// each interval of `ranges`. `which` is `f64::max` for the greatest and `f64::min` for the
     /// least. Returns `None` if `ranges` is empty.
     pub fn fold(ranges: impl Iterator<Item = Self>, which: fn(f64, f64) -> f64) -> Option<Self> {
-        // An interval with a NaN end is replaced first by that of all numbers, because `f64::max`
-        // and `f64::min` ignore NaN.
+        // An interval with a NaN end is first replaced by the interval of all numbers, because
+        // `f64::max` and `f64::min` ignore NaN.
         ranges.map(Self::or_all).reduce(|a, b| Self {
             low: which(a.low, b.low),
             high: which(a.high, b.high),

@@ -18,17 +18,18 @@ use crate::{
 };
 
 /// Upper bound of the rounding error of a [`LocalForm`]'s value, divided by the sum of the absolute
-/// values of the form's factors. It counts one rounding for each factor, one for the factor's
-/// division by the error bound ([`LocalForm::line`]), and two for products and sums, which are
-/// small because offsets are at most ½.
+/// values of the form's factors. The value is four roundings: one for each factor, one for the
+/// factor's division by the error bound ([`LocalForm::line`]), and two for products and sums.
+/// Products and sums are small, because offsets are at most ½.
 const LINEAR_ROUNDING: f64 = 4.0 * f64::UNIT;
 /// Upper bound of the rounding error of a [`LocalQuadratic`]'s value, divided by the sum of the
-/// absolute values of the form's factors. Each of the form's six terms has at most five roundings.
-/// With those of the terms' products and sums, the total is at most 16 roundings of the sum of
-/// absolute values.
+/// absolute values of the form's factors. The value is 16 roundings. It covers at most five
+/// roundings in each of the form's six terms, and the roundings of the products and sums of the
+/// terms.
 pub const LOCAL_ROUNDING: f64 = 16.0 * f64::UNIT;
-/// Error bound for underflow in the value of a form. Each of the form's at most 16 products may be
-/// below the normal numbers of `f64`, and then loses at most half of the least positive number.
+/// Error bound for underflow in the evaluation of a form, which has at most 16 products. If a
+/// product is below the normal numbers of `f64`, its error is at most half of the least positive
+/// number.
 const UNDERFLOW_ERROR: f64 = 16.0 * f64::TINY;
 
 /// A rectangle of the view plane.
@@ -36,8 +37,8 @@ const UNDERFLOW_ERROR: f64 = 16.0 * f64::TINY;
 pub struct Patch {
     /// The direction through the rectangle's centre.
     pub center: Direction<f64>,
-    /// Width and height of the rectangle, in the unit of the components X and Y of a ray's
-    /// direction.
+    /// Width and height of the rectangle, as differences of X and Y, the first two components of a
+    /// ray's direction.
     pub sides: [f64; 2],
 }
 
@@ -94,8 +95,8 @@ impl Patch {
 }
 
 impl Form<f64> {
-    /// Expands the form about the centre of a rectangle. The form's error bound counts twice: for
-    /// the factors, and for the value at the centre.
+    /// Expands the form about the centre of a rectangle. The form's error bound is doubled, to
+    /// cover both the error of the factors and the error of the value at the centre.
     #[inline]
     pub fn local(&self, patch: &Patch) -> LocalForm {
         let [a, b, _] = *self.factors();

@@ -1,8 +1,9 @@
 //! The objects near a small part of the picture, selected by their bounds alone.
 //!
-//! In: a part with too many objects to find out exactly where each is seen. Out: the objects that
-//! rays through the part may hit, the nearest first; and from these, the objects that rays through
-//! one pixel may hit. Finding them once takes less time than a search of the quadtree for each ray.
+//! In: a part with so many objects that it would take too long to find out exactly where each is
+//! seen. Out: the objects that rays through the part may hit, the nearest first. From these, the
+//! objects that rays through one pixel may hit are selected. One search of the quadtree for all
+//! rays of the part takes less time than a search for each ray.
 
 use super::{
     candidates,
@@ -21,8 +22,8 @@ pub fn nearby(world: &World, part: Area) -> Option<Vec<BoundedObject>> {
 }
 
 /// Replaces `out` by the objects of `nearby` that rays through `part` may hit, in unchanged order.
-/// `nearby` must contain all objects near an area around the part. If the whole part certainly
-/// shows one colour, returns the colour's index in the palette.
+/// `nearby` is the result of the function [`nearby`] for an area that contains the part. If the
+/// whole part certainly shows one colour, returns the colour's index in the palette.
 pub fn in_part(
     world: &World,
     part: Area,

@@ -84,8 +84,8 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// Returns the ray's crossing with the object behind the first one. The ray must hit the
-    /// object. Returns `None` if there is no second crossing.
+    /// Returns the second crossing of the ray with the object. The ray must hit the object. Returns
+    /// `None` if there is no second crossing.
     pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
         match self.surface_kind() {
             SurfaceKind::Flat(convex) => convex.second(r),

@@ -1,9 +1,9 @@
-//! Boxes whose faces have colours of their own, taken apart into their faces.
+//! Division of boxes with coloured faces into their faces.
 //!
-//! In: a scene. Out: a new scene, and for each of its objects the index in the file of the object
-//! from which it comes. In the new scene, every box with coloured faces is replaced by those of its
-//! faces that may be seen. The tracer treats each face as a flat object. Two faces that share an
-//! edge have the same line for it, so that no ray passes between them.
+//! In: a scene. Out: a new scene in which every box with coloured faces is replaced by those of its
+//! faces that may be seen, and the index of the original object for each new object. The tracer
+//! treats each face as a flat object. Two faces that share an edge compute exactly the same line
+//! for the edge, so that no ray passes between them.
 
 use std::{array, borrow::Cow, sync::Arc};
 
@@ -20,15 +20,15 @@ pub(super) enum Faces {
     All,
 }
 
-/// For each object of the divided scene, the index in the file of the object from which it comes,
-/// and the face's number if it is a face of a box. Empty if no object was divided.
+/// For each object of the divided scene, the index of the original object in the file. If the
+/// object is a face of a box, also the number of the face. Empty if no object was divided.
 #[derive(Debug, Default)]
 pub(super) struct Pieces(Vec<(usize, Option<u8>)>);
 
 impl Pieces {
-    /// Divides every box with coloured faces into the faces `which`. Returns the new scene, or
-    /// `scene` itself if it has no such box, and the index of the original object for each new
-    /// object.
+    /// Divides every box with coloured faces into the faces that `which` selects. Returns the new
+    /// scene and, for each of its objects, the original object. Returns `scene` itself if it has no
+    /// such box.
     pub fn of(scene: &Scene, which: Faces) -> (Cow<'_, Scene>, Self) {
         let box_with_faces = |object: &Object| {
             let cuboid = object.shape.cuboid()?;
@@ -41,7 +41,8 @@ impl Pieces {
         {
             return (Cow::Borrowed(scene), Self::default());
         }
-        // The near plane may cut off front faces, so that the faces behind them are seen.
+        // The near plane may cut off front faces, so that the faces behind them are seen. If there
+        // is a near plane, all faces are therefore kept.
         let only_fronts = which == Faces::Seen && scene.camera.near == 0.0;
         let (mut objects, mut pieces) = (Vec::new(), Vec::new());
         for (owner, object) in scene.objects.iter().enumerate() {
@@ -74,13 +75,14 @@ impl Pieces {
         (Cow::Owned(Scene { objects, ..scene }), Self(pieces))
     }
 
-    /// Returns the index in the file of the object from which an object of the divided scene comes.
+    /// Returns the index in the file of the original object of `piece`, an object of the divided
+    /// scene. The original object of a face is its box.
     pub fn owner(&self, piece: usize) -> usize {
         self.0.get(piece).map_or(piece, |(owner, _)| *owner)
     }
 
-    /// Returns the number of the box's face that an object of the divided scene is. Returns `None`
-    /// for any other object.
+    /// Returns the number of the face if `piece`, an object of the divided scene, is a face of a
+    /// box. Returns `None` for any other object.
     pub fn face(&self, piece: usize) -> Option<u8> {
         self.0.get(piece)?.1
     }

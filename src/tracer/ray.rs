@@ -114,8 +114,8 @@ fn rounded(x: &Big) -> Ball<Big> {
     }
 }
 
-/// Returns the nearest `f64`, or 0 if the number cannot be distinguished from 0. Without this, a
-/// point in the plane y = 0 might be printed with a height of 1e-97.
+/// Returns the nearest `f64`, or 0 if the number cannot be distinguished from 0. Otherwise, a point
+/// in the plane y = 0 might be printed with a height of 1e-97.
 fn settled(x: &Ball<Big>) -> f64 {
     match x.sign() {
         Ok(Ordering::Equal) => 0.0,

@@ -67,7 +67,8 @@ impl<T: Real> Sphere<T> {
             .map(Ball::size)
             .fold(radius_ball.size(), Radius::max);
         // The exponent is limited so that the power of two is within the range of `f64`. The limit
-        // may leave the lengths 2^74 times too large or too small, which does no harm.
+        // may leave the lengths 2^74 times too large or too small. This does no harm, because
+        // products of a few such lengths are still within the range of `f64`.
         let exponent = (-greatest.exponent()).clamp(-1000, 1000);
         let from_eye = from_eye.map(|x| x.scaled(exponent));
         let radius_ball = radius_ball.scaled(exponent);
@@ -114,9 +115,9 @@ impl<T: Real> Sphere<T> {
         let m = cx.times(&r.y).minus(&cy.times(&r.x));
         let cross = k.times(&k).plus(&l.times(&l)).plus(&m.times(&m));
         let (rad_q, rad_b) = if T::LAST {
-            // The highest precision has to decide, so that its errors are bounded for this ray
-            // alone: in the middle of the widest views, they are far smaller than the bounds for
-            // the whole window.
+            // No higher precision can resolve a doubt of the highest one. Its error bounds are
+            // therefore computed for this ray alone. In the middle of the widest views, they are
+            // far smaller than the bounds for the whole window.
             radii::<T>(
                 self.center.each_ref().map(Real::magnitude),
                 self.rad_c,
@@ -159,8 +160,8 @@ impl<T: Real> Sphere<T> {
         }
     }
 
-    /// Returns the ray's crossing with the sphere behind the first one. The ray must hit the
-    /// sphere. Returns `None` if the eye is not outside the sphere.
+    /// Returns the second crossing of the ray with the sphere, where the ray leaves it. The ray
+    /// must hit the sphere. Returns `None` if the eye is not outside the sphere.
     pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
         if self.side != Ordering::Greater {
             return None;
@@ -215,7 +216,7 @@ impl Sphere<f64> {
     pub fn cover(&self, patch: &Patch) -> Option<Cover> {
         let (q, b) = self.local(patch);
         let (q, b) = (q.range(), b.range());
-        // The condition fails only after an overflow.
+        // The ends of a range are out of order or NaN only after an overflow.
         if !(q.low <= q.high && b.low <= b.high) {
             return Some(Cover {
                 is_whole: false,
@@ -245,8 +246,8 @@ impl Sphere<f64> {
         })
     }
 
-    /// Returns the range of the inverse depths at which rays that start outside leave the sphere.
-    /// Returns `None` if the eye is not outside the sphere.
+    /// Returns the range of the inverse depths at which rays from outside leave the sphere. Returns
+    /// `None` if the eye is not outside the sphere.
     pub fn behind(&self, patch: &Patch) -> Option<Interval> {
         let exits = || {
             let (q, b) = self.local(patch);
@@ -296,10 +297,10 @@ impl Sphere<f64> {
     /// the discriminant of the equation for a ray's crossings, and the scalar product of the
     /// sphere's centre and the ray's direction ([`Sphere`]).
     pub fn local(&self, patch: &Patch) -> (LocalQuadratic, LocalForm) {
-        // The factors of Q, a quarter of the discriminant, consist of the same products as Q, and
-        // the rectangle lies within the window. Q's error bound therefore counts eight times: once
-        // for the value at the centre, twice for each of the two gradients, and once for each of
-        // the three second derivatives.
+        // Q is a quarter of the discriminant. The factors of its local form consist of the same
+        // products as Q, and the rectangle lies within the window. Eight times Q's error bound
+        // therefore covers their errors: once for the value at the centre, twice for each of the
+        // two gradients, and once for each of the three second derivatives.
         const TIMES: f64 = 8.0;
         let [cx, cy, cz] = self.center;
         let (r, [width, height]) = (&patch.center, patch.sides);
@@ -333,7 +334,8 @@ impl Sphere<f64> {
     }
 
     /// Converts a range of inverse depths to the world's unit, and widens it by more than all
-    /// rounding errors so far.
+    /// rounding errors of its computation. If the relative error of C ([`Sphere`]) is too large,
+    /// returns the interval of all numbers.
     fn widened(&self, range: Interval) -> Interval {
         // Factor by which the ends of a range are widened. It covers a few roundings of 2^−53, and
         // a relative error of C ([`Sphere`]) of at most 2^−30.
@@ -352,7 +354,8 @@ impl Sphere<f64> {
 }
 
 impl<T: Real> Sphere<T> {
-    /// Returns the centre in the camera's axes, and R², in the sphere's own unit of length.
+    /// Returns the centre in the camera's axes and the square of the radius, in the sphere's own
+    /// unit of length.
     pub fn parts(&self) -> (Ball3<T>, Ball<T>) {
         let ball = |mid: &T| Ball {
             mid: mid.clone(),
@@ -434,11 +437,12 @@ fn power<T: Real>(
     (Ball::from_big(&power.to_big().scaled(2 * exponent)), side)
 }
 
-/// Returns upper bounds of the errors of two numbers ([`Sphere`]): Q, a quarter of the discriminant
-/// of the equation for a ray's crossings, and the scalar product of the sphere's centre and the
-/// ray's direction. The bounds hold for rays whose |X|, |Y| and |Z| are at most `[x, y, z]`. `[cx,
-/// cy, cz]` are the absolute values of the centre's coordinates, and `rad_c` is their error;
-/// `square` is the square of the radius, and `rad_square` its error.
+/// Returns upper bounds of the errors of Q, a quarter of the discriminant of the equation for a
+/// ray's crossings, and of the scalar product of the sphere's centre and the ray's direction
+/// ([`Sphere`]). The bounds hold for rays whose |X|, |Y| and |Z| are at most `[x, y, z]`.
+///
+/// `[cx, cy, cz]` are the absolute values of the centre's coordinates, and `rad_c` is their error.
+/// `square` is the square of the radius, and `rad_square` is its error.
 fn radii<T: Real>(
     [cx, cy, cz]: [T::Radius; 3],
     rad_c: T::Radius,
@@ -450,7 +454,8 @@ fn radii<T: Real>(
     let mut rad_q = T::Radius::ZERO;
     let mut cross = T::Radius::ZERO;
     // Each component of c × r is a difference of two products. `size` bounds the sum of the
-    // products' absolute values, and `reach` is the factor by which the centre's error counts.
+    // products' absolute values, and `reach` is the factor by which the centre's error is
+    // multiplied.
     for (size, reach) in [
         (cy * z + cz * y, y + z),
         (cz * x + cx * z, x + z),
@@ -463,8 +468,9 @@ fn radii<T: Real>(
     let r_square = x * x + y * y + z * z;
     rad_q = rad_q + rad_square * r_square + (square * r_square + cross) * unit;
     let rad_b = rad_c * (x + y + z) + (cx * x + cy * y + cz * z) * unit;
-    // Numbers below the normal numbers, possibly also Z, have errors of up to `TINY`. No coordinate
-    // of the centre is greater than 2, so that a multiple of `TINY` covers all these errors.
+    // Numbers below the normal numbers have errors of up to `TINY`. In the widest views, Z may be
+    // such a number. No coordinate of the centre is greater than 2, so that 64 · `TINY` covers all
+    // these errors.
     let tiny = T::TINY * 64.0;
     ((rad_q + tiny) * UP, (rad_b + tiny) * UP)
 }

@@ -171,9 +171,9 @@ fn the_quadtree_changes_nothing() {
     }
 }
 
-/// In the rows at the horizon, `f64` leaves about 1e-10 of the samples undecided. With objects in
-/// one plane, it must decide every sample, because a higher precision takes a hundred times as
-/// long.
+/// In the rows at the horizon, `f64` leaves about 1e-10 of the samples undecided. If objects lie in
+/// one plane, `f64` must nevertheless decide every sample, because a higher precision takes a
+/// hundred times as long.
 #[test]
 fn f64_alone_decides_nearly_everything() {
     let figure = [
@@ -304,8 +304,8 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
 }
 
 /// If objects lie in one plane, the tracer tests at nearly every sample point whether two of them
-/// lie in one plane. This test must not prepare objects in a higher precision: a point would then
-/// cost as much as in a scene with too many objects for the cache of prepared objects.
+/// lie in one plane. The test must not prepare objects in a higher precision. Otherwise, each point
+/// would take as long as in a scene whose objects do not fit into the cache of prepared objects.
 #[test]
 fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
     let mut shapes = vec![

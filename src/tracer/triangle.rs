@@ -61,8 +61,8 @@ fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> B
             return normal;
         }
     }
-    // Vertices may be so far away that their directions from the eye differ only after hundreds of
-    // bits. The normal is then computed exactly.
+    // Vertices may be so far away that the first hundreds of bits of their directions from the eye
+    // are equal. The normal is then computed exactly.
     let [a, b] = [a, b].map(|corner| Dyadic::between(camera.eye, corner));
     let normal = Dyadic::cross(&a, &b).map(|x| Ball::<Big>::from_big(&x.to_big()));
     camera.turned(&scaled_to_one(&normal).map(|x| Ball::from_big(&x.mid)))
@@ -89,8 +89,8 @@ fn by_centroid<T: Real>(
         array::from_fn(|i| c[i].scaled(far + exponent) + o[i].scaled(near + exponent))
     };
     // Only the signs of the edges' forms matter, so that lengths may be scaled. With the corners a
-    // = c + o and b = c + p, a × b is computed as c × (p − o) + o × p. Computed from the corners
-    // themselves, it would lose most digits if the triangle is small and far away.
+    // = c + o and b = c + p, a × b is computed as c × (p − o) + o × p. If a × b were computed from
+    // a and b themselves, it would lose most digits for a small triangle that is far away.
     let edge = |a: usize, b: usize| {
         let along: Ball3<T> = array::from_fn(|i| &offsets[b][i] - &offsets[a][i]);
         let turn = cross(&offsets[a], &offsets[b]);
@@ -135,7 +135,8 @@ pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
 struct SeenPlane<T: Real> {
     normal: Ball3<T>,
     height: Ball<T>,
-    /// Side of the plane on which the eye lies: the sign of h before the division.
+    /// Side of the plane on which the eye lies: the sign of n·q for a point q of the plane. The
+    /// normal n is the given one, before it is divided by its greatest component.
     side: Ordering,
 }
 
@@ -168,8 +169,8 @@ impl<T: Real> SeenPlane<T> {
     }
 
     /// Returns the triangle that lies in this plane. `edges` are normals of the planes through the
-    /// eye and each edge. They point inwards if the eye sees the triangle from the front, and are
-    /// reversed if it sees the triangle from behind.
+    /// eye and each edge. They must point inwards for an eye that sees the triangle from the front.
+    /// If the eye sees it from behind, this function reverses them.
     fn with_edges(&self, camera: &Camera<T>, edges: [Ball3<T>; 3]) -> Convex<T> {
         let facing = |n: Ball3<T>| if self.side.is_lt() { n.map(|x| -x) } else { n };
         let edges = edges.into_iter().map(|n| Form::new(camera, &facing(n)));
@@ -215,8 +216,8 @@ fn offsets<T: Real>(shape: &CenteredTriangle) -> [Ball3<T>; 3] {
 }
 
 /// Returns two perpendicular unit vectors in the plane with the normal n: to the right, (Y × n)/|Y
-/// × n|, and to the top, n/|n| times the first vector. Y is the y axis; (0, 0, −1) replaces it if n
-/// is parallel to it.
+/// × n|, and to the top, n/|n| times the first vector. Y is the y axis; if n is parallel to the y
+/// axis, Y is (0, 0, −1).
 fn plane_axes<T: Real>(normal: DVec3) -> (Ball3<T>, Ball3<T>) {
     let [x, y, z] = normal.to_array();
     let (zero, one) = (Ball::exact(0.0), Ball::exact(1.0));

@@ -120,8 +120,9 @@ fn culling_is_exact_for_generated_scenes() {
         let colors =
             scenes.map(|((_, scene), method)| compare(&scene, method, Count::PerPixel(24)));
         let colors: usize = colors.sum();
-        // Unless many numbers have extreme magnitudes, the hundred pictures have on average more
-        // than ten colours each, because pixels at edges mix colours.
+        // A hundred pictures were compared. Pixels at edges mix colours, so the pictures have on
+        // average more than ten colours each, except if many numbers in the scenes have extreme
+        // magnitudes (`wild`).
         assert!(colors > 100 * 10 || wild > 5, "{wild}: {colors}");
     }
 }
@@ -131,9 +132,10 @@ sampled_and_exhaustive!(culling_is_exact_for_scenes_full_of_ties);
 fn culling_is_exact_for_scenes_full_of_ties(effort: Effort) {
     let scenes = generated(Numbers::MultiplesOf(0.5), [8, 8], 77);
     for (_, scene) in effort.first(60, scenes.take(300)) {
-        // A single sample lies at the pixel's centre. Of four samples, each lies 1/4 pixel from the
-        // centre along both axes; of 16, each lies 1/8 or 3/8 pixel from it. Many samples hit edges
-        // exactly, and many rays lie in planes of surfaces.
+        // The scenes' numbers are multiples of 1/2, and the samples form a regular grid. A single
+        // sample lies at the pixel's centre. Of four samples, each lies 1/4 pixel from the centre
+        // along both axes. So many samples hit edges exactly, and many rays lie in planes of
+        // surfaces.
         for n in [1, 4, 16] {
             compare(&scene, Method::Regular, Count::PerPixel(n));
         }
@@ -141,7 +143,8 @@ fn culling_is_exact_for_scenes_full_of_ties(effort: Effort) {
 }
 
 /// Renders overlapping triangles, half of them in a tilted plane and half in the board's plane. One
-/// of the scenes has more triangles than the tracer can cache in higher precision.
+/// scene has more triangles than the tracer's cache can hold. The cache keeps objects converted to
+/// a number type more precise than `f64`.
 #[test]
 fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     let mut random = Random::new(141);
@@ -168,8 +171,8 @@ fn culling_is_exact_for_thousands_of_coplanar_triangles() {
         }
     }
     few += "checkerboard {}\n";
-    // Each triangle occurs twice, with different normals and colours. The first of the two in the
-    // file is visible.
+    // The text `many` contains each triangle twice, with different normals and colours. Only the
+    // first of two equal triangles is visible, so both scenes must give the same picture.
     many.insert_str(0, &few);
     let [few, many] = [&few, &many].map(|text| read(text));
     assert!(compare(&few, Method::Jittered, Count::PerPixel(4)) > 100);
@@ -197,7 +200,7 @@ fn culling_is_exact_for_parallel_layers() {
         let mut text = "image { width 24 height 18 } camera { eye (0.3, 0.2, 4) lookat (0, 0, 0) roll 10deg }\n".to_owned();
         for index in 0..count {
             // The layers are not listed in the order of their heights. Every third layer has the
-            // same height as another one, so only one of the two is visible.
+            // same height as another one, so some of the objects coincide.
             let place = f64::from(index * 37 % count);
             let height = 1.0 + apart * (place - place % 3.0 % 2.0);
             let sign = if index % 2 == 0 { "-" } else { "" };
@@ -222,9 +225,9 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
     let mut random = Random::new(12);
     let mut scenes = generated(Numbers::Wild(0), [1, 1], 31);
     let mut methods = Method::SAMPLED.into_iter().cycle();
-    // Where few objects may be seen in a pixel, the tracer evaluates several samples of the pixel
-    // at once; elsewhere, it traces samples one by one. The pixels of the larger pictures are so
-    // small that few objects may be seen in each, so these pictures test the first way.
+    // If few objects may be seen in a pixel, the tracer evaluates several samples of the pixel at
+    // once. Otherwise, it traces the samples one by one. Pictures of 160 × 120 pixels test the
+    // evaluation of several samples, because few objects may be seen in each of their small pixels.
     for (roll, clips, size, counts) in [
         (0, "", "width 31 height 23", &[2, 4, 8, 9, 100][..]),
         (0, "near 5.5 far 8", "width 31 height 23", &[1, 3, 16]),
@@ -262,9 +265,9 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
         // A thousand objects are listed a second time. The copies are invisible, because only the
         // first of equal objects is seen.
         objects.extend_from_within(3500..4500);
-        // With one sample per pixel, some areas of the picture must be crowded, i.e. show so many
-        // objects that the tracer takes their samples one by one. Otherwise, the pictures below
-        // would not test this way of tracing.
+        // The tracer traces samples one by one in areas of the picture where many objects may be
+        // seen (`Crowded`). The scene must have such an area, so that the comparisons below include
+        // this case.
         let world = World::new(&all);
         let parts = Quartering::for_samples(&world, 1.0);
         let flow = parts.parts(

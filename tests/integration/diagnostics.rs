@@ -241,8 +241,9 @@ fn long_source_lines_are_cut_in_reports() {
 #[test]
 fn a_text_in_utf_16_is_one_mistake() {
     let marked = "\u{feff}sphere { center (0, 1, 0) }\n";
-    // Some programs write UTF-16 without a byte order mark. The text also has a comment with
-    // letters that are not ASCII.
+    // Some programs write UTF-16 without a byte order mark. In UTF-16, one byte of each ASCII
+    // letter is 0, but not of the Cyrillic letters in the comment. The encoding must be recognized
+    // even so.
     let bare = "// Кубы\nsphere { center (0, 1, 0)  radius 2 }\n";
     let texts = [marked, bare, &marked[3..]].into_iter();
     let encoded = texts.flat_map(|text| {
@@ -260,7 +261,8 @@ fn a_text_in_utf_16_is_one_mistake() {
 }
 
 /// In a narrow terminal, excerpts of the scene are cut around the label, and all other lines wrap
-/// at words. Only an excerpt with several labels in one line may be wider than the terminal.
+/// at words. A line may be wider than the terminal only if it contains a very long word.
+/// Diagnostics with several labels are not tested, because their excerpts may be wider too.
 #[test]
 fn reports_fit_into_the_terminal() {
     let mut cut = 0;

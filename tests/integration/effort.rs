@@ -7,7 +7,7 @@
 /// Choice of the cases that a test tries from its table.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Effort {
-    /// Only the first case of the table, or a given number of first cases.
+    /// Only the first cases of the table: one case, unless the test gives another number.
     Sample,
     /// All cases of the table.
     Exhaustive,

@@ -53,8 +53,8 @@ fn assert_light(film: &Film, text: &str) {
 
 /// Renders a scene with culling, sample by sample, and exactly, and compares the three pictures. If
 /// `is_decided` is false, the samples are not compared with the exact picture. This is for scenes
-/// with squares and positions of any magnitude, where only arithmetic of hundreds of bits could
-/// decide which square a sample hits.
+/// whose squares may be too small, compared with their distance, for the tracer to tell which
+/// square a sample hits.
 fn render_in_each_way(scene: &Scene, text: &str, is_decided: bool) {
     let control = one_thread();
     let (world, sampling, whole) = (World::new(scene), sampling(scene), whole(scene));
@@ -145,7 +145,8 @@ fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
 
 sampled_and_exhaustive!(scenes_at_the_limits_of_f64_render_alike_in_every_way);
 
-/// Renders each scene of `tests/extremes` in every way, and compares the pictures.
+/// Renders each scene of `tests/extremes` with culling, sample by sample, and exactly, and compares
+/// the three pictures.
 fn scenes_at_the_limits_of_f64_render_alike_in_every_way(effort: Effort) {
     for path in scenes("tests/extremes") {
         if effort == Effort::Sample
@@ -158,11 +159,13 @@ fn scenes_at_the_limits_of_f64_render_alike_in_every_way(effort: Effort) {
     }
 }
 
-/// The camera looks horizontally, with the eye 1/4 below a sphere. This distance is tiny compared
-/// with the radius, so the sphere nearly touches the eye and looks like a horizontal plane above
-/// it: it covers about half of the pixel. Its silhouette is the upper branch of a hyperbola whose
-/// two branches run close above and below the pixel's middle. For the largest radius, they are only
-/// 1e-154 pixels apart.
+/// The picture has one pixel. The camera looks horizontally, with the eye 1/4 below a sphere.
+/// Compared with the radius, this distance is tiny, so the sphere looks like a horizontal plane
+/// above the eye, and covers about half of the pixel.
+///
+/// The sphere's silhouette is the upper branch of a hyperbola. The two branches run close above and
+/// below the pixel's middle. For the largest radius, they are only 1e-154 pixels apart, which makes
+/// the exact mean hard to compute.
 #[test]
 fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
     for radius in ["1e3", "1e10", "1e100", "1e200", "1.7976931348623157e308"] {
@@ -187,9 +190,9 @@ fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
     }
 }
 
-/// Near the centre of a picture with an extremely wide view, rays in the board's plane have tiny
-/// directions compared with all other rays. The numbers by which the tracer compares the depths of
-/// surfaces are tiny, too.
+/// In an extremely wide view, rays near the picture's centre have tiny directions compared with all
+/// other rays. The tracer then compares the depths of surfaces by tiny numbers. It must still find
+/// the nearest surface.
 #[test]
 fn the_nearest_surface_is_seen_at_the_centre_of_the_widest_views() {
     for view in [

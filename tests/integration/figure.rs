@@ -22,7 +22,8 @@ fn drawn(example: &str, kind: Kind, sets: &[&str]) -> Result<String, String> {
     figure(&scene, kind, Choice::default())
 }
 
-/// Figures that the handout shows are stored beside the pages of the handout.
+/// Compares figures with stored files. The figures of the handout are stored beside its pages, and
+/// the others in `tests/figures`.
 #[test]
 fn figures_keep_their_bytes() {
     const VERTICES: [&str; 3] = [
@@ -108,7 +109,6 @@ fn texts(svg: &str) -> Vec<(String, [DVec2; 2])> {
     found
 }
 
-/// In one of the scenes, the names are longer than any figure has room for.
 #[test]
 fn texts_lie_in_the_figure_and_none_upon_another() {
     let mut count = 0;

@@ -16,7 +16,8 @@ pub enum Numbers {
     /// surfaces; rays lie in planes and pass through corners and along edges; faces lie in common
     /// planes, or at the near and far depths.
     MultiplesOf(f64),
-    /// Whole, round and other numbers. The contained percentage of them may have any magnitude.
+    /// Whole, round and other numbers. The value is the percentage of the numbers that may have any
+    /// magnitude.
     Wild(u64),
 }
 
@@ -132,9 +133,9 @@ impl Generator {
             ),
             3 | 4 => {
                 let [a, b] = [(); 2].map(|()| self.length(2.5));
-                // No side is longer than the other two together, but one is often exactly as long
-                // as the other two together. A triangle with the sides 2.5, 2.5 and 3 can have
-                // rational vertices.
+                // In the first two choices, one side is as long as the other two together, which is
+                // the limit of what a triangle may have. The last choice can have rational
+                // vertices, because its height above the side 3 is 2.
                 let sides = match self.random.below(4) {
                     0 => [a, b, a + b],
                     1 => [a, b, (a - b).abs()],

@@ -27,8 +27,8 @@ fn rendered(text: &str) -> image::RgbImage {
     image::RgbImage::from_fn(160, 90, |x, y| image::Rgb(encoder.pixel(film.pixel(x, y))))
 }
 
-/// Returns a PNG file of any colour type. The crate `image` is not used, because its encoder for
-/// all formats would be compiled again for this module.
+/// Returns a PNG file of any colour type. The crate `png` is used, because an encoder of the crate
+/// `image` would make the tests take longer to compile.
 pub fn png([width, height]: [u32; 2], color: ColorType, depth: BitDepth, data: &[u8]) -> Vec<u8> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);

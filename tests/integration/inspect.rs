@@ -45,8 +45,8 @@ fn the_default_triangle_has_the_sides_of_the_assignment() {
             ((left + right + apex) / 3.0).distance(dvec3(1.0, 2.0, 3.0)),
             0.0,
         ),
-        // The base is level, and the apex is above it. As seen from the tip of the normal, the end
-        // `right` of the base is on the right.
+        // The expected base, between `left` and `right`, is level. The apex is above it, and
+        // `right` is on the right as seen from the tip of the triangle's normal.
         (left.y, right.y),
         (normal.distance(dvec3(0.3, -0.2, 1.0).normalize()), 0.0),
     ] {
@@ -151,14 +151,15 @@ fn probe_sees_the_colour_that_the_picture_shows() {
 fn probe_works_far_outside_the_picture_and_with_extreme_lenses() {
     let text =
         "camera { eye (0, 0, 4) direction (0, 0, -1) } sphere { center (40, 0, 0) radius 1 }";
-    // The centre of the sphere is ten times as far to the right as its depth. So it is seen at x =
-    // 10 · 2 = 20 in the view plane, where 1 m is 225 pixels.
+    // The centre of the sphere is ten times as far to the right as it is deep. The view plane is at
+    // a distance of 2 m by default, so the centre is seen at x = 20 m in it, where 1 m is 225
+    // pixels.
     let probe = probed(text, 400.0 + 20.0 * 225.0, 225.0);
     assert_eq!(probe.color.to_string(), "#808000");
     assert!(probed(text, -1e300, 1e300).hits.is_empty());
-    // In the worked example, the eye looks down, and a point of the floor is at twice the
-    // coordinates of its image (1, −1.5) in the view plane. The image is 160 pixels to the right of
-    // the picture's centre and 240 pixels above it.
+    // In this example, the eye looks down, and the floor is twice as far from it as the view plane.
+    // The probed pixel is at x = 1 and z = −1.5 in the view plane, so it shows the point of the
+    // floor at x = 2 and z = −3.
     let worked = example("looking_down_the_y_axis");
     let hits = probed(&worked, 560.0, 160.0).hits;
     let floor = hits
@@ -179,8 +180,9 @@ fn probe_works_far_outside_the_picture_and_with_extreme_lenses() {
         let depths: Vec<_> = probe.hits.iter().map(|(hit, ..)| hit.depth).collect();
         assert_eq!(depths, [4.5, 5.5], "{lens}");
         let json = json_of(&inspected(&text)).to_string();
-        // In the widest view, the box covers so little of a pixel that the fraction is too small
-        // for an `f64`. The output then has `null` in place of four numbers.
+        // The output has four expected `null`s: the far distance, two vanishing points, and the
+        // name of the box. An infinite number would be a fifth one. The text from `seen` on is left
+        // out, because it contains another `null` if the box covers almost nothing of a pixel.
         let (facts, _) = json.split_once("\"seen\"").unwrap();
         assert_eq!(facts.matches("null").count(), 4, "{lens}: {json}");
     }
@@ -191,7 +193,6 @@ fn probe_works_far_outside_the_picture_and_with_extreme_lenses() {
     assert_eq!(hit.point, dvec3(0.0, 0.0, -1.7e308));
 }
 
-/// The output of the program says how much of each object is visible.
 #[test]
 fn inspect_reports_what_is_visible_of_each_object() {
     let scene =
@@ -216,10 +217,11 @@ fn inspect_reports_what_is_visible_of_each_object() {
         (5, r#""outside":"nearer than `near`""#),
         (6, r#""outside":"beyond `far`""#),
         // The silhouette of the sphere is an ellipse that extends from 41.5 to 29.2 pixels left of
-        // the picture's centre. Let r be the radius of a sphere, c the distance of its centre from
-        // the eye, and z the depth of the centre. In a view plane at 1 m, where 1 m is 50 pixels,
-        // the silhouette has the area
-        //     π·r²·√(c² − r²) / (z² − r²)^1.5.
+        // the picture's centre. The sphere has the radius r = 1. Its centre is at the depth z = 10
+        // and at the distance c = √149 from the eye. At a distance of 1 m, 1 m² covers 2500 pixels,
+        // so the silhouette covers
+        //     2500·π·r²·√(c² − r²) / (z² − r²)^1.5 = 96.999154
+        // pixels.
         (7, r#""box":[8,44,13,12],"pixels":96.999154}"#),
         (8, r#""outside":"right of the window""#),
     ] {

@@ -9,8 +9,9 @@ use std::{
 
 use crate::program::{Folder, Outcome};
 
-/// Runs a command and interrupts it after `after` milliseconds, when it has begun but is far from
-/// done. Asserts that it ends within five seconds of the interruption. Returns its output.
+/// Runs a command and interrupts it after `after` milliseconds. The caller chooses this time such
+/// that the command has begun but is not nearly finished. Asserts that it ends within five seconds
+/// of the interruption. Returns its output.
 pub fn interrupted(command: &mut Command, after: u64) -> Outcome {
     let (said, time) = end_with_signal("INT", command, after);
     assert!(time < Duration::from_secs(5));

@@ -1,5 +1,6 @@
-//! Tests of the hard cases of `report --numerics`. Pinhole decides none of them wrongly, and the
-//! formulas of a textbook decide many wrongly.
+//! Tests of the hard cases of `report --numerics`, i.e. of scenes in which rounding errors easily
+//! cause wrong answers. Pinhole must never be wrong, and the formulas of a textbook must often be
+//! wrong.
 
 use std::{
     collections::BTreeSet,
@@ -62,9 +63,9 @@ fn hard_cases_break_the_textbook_formulas_and_stay_within_the_claimed_bound() {
         }
         if row.case.decides() {
             let share = tally.wrong[0] as f64 / INPUTS as f64;
-            // In the case S7, which has equal spheres, one of the textbook's formulas decides
-            // correctly in any precision. So the fraction of wrong decisions is smaller than in
-            // other cases.
+            // The case S7 has two spheres with the same centre. If their radii are equal, too, the
+            // rounding errors are the same for both, and the formulas of the textbook are right. So
+            // the fraction of wrong answers is smaller than in other cases.
             let least = if id == "S7" { 0.002 } else { 0.05 };
             assert!(share >= least, "{id}: {share}");
         } else {

@@ -44,12 +44,13 @@ fn every_scene_means_the_same_when_read_in_parts() {
     let in_parts = scenes
         .filter(|text| assert_same_in_parts(text, 1, &[]))
         .count();
-    // Most scenes have mistakes and are therefore not parsed in parts, but at least the examples
-    // are.
+    // A text with syntax errors is not parsed in parts. Many of the scenes have such errors, but at
+    // least the examples have none.
     assert!(in_parts >= 20, "{in_parts}");
 }
 
-/// The mistakes are at a brace, or on both sides of the boundary between two parts.
+/// The program may parse a long text in parts, which it splits at braces. The tested mistakes are
+/// at a brace, or on both sides of the boundary between two parts.
 #[test]
 fn mistakes_at_a_part_boundary_are_reported_as_in_the_whole_text() {
     let camera = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";

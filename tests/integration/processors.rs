@@ -29,12 +29,12 @@ const SCENES: [&str; 5] = [
     "inside_the_sphere",
 ];
 
-/// Environment variable that contains the path of a folder. If it is set, the test only writes
-/// pictures into the folder. The test sets it for its own copy that runs in QEMU.
+/// Environment variable for the copy of the test that runs in QEMU. It contains the path of the
+/// folder into which the copy writes pictures. The copy does nothing else.
 const FOLDER: &str = "PINHOLE_TEST_PICTURES";
 
-/// Runs the test's own binary in QEMU, only once for each processor, since QEMU translates most of
-/// the code anew in each process.
+/// Compares the pictures with those that the same test binary draws in QEMU. One process draws all
+/// pictures for a processor, because QEMU translates most of the code anew in each process.
 #[test]
 #[ignore = "needs QEMU"]
 fn all_processors_make_the_same_pictures() {
@@ -62,7 +62,8 @@ fn all_processors_make_the_same_pictures() {
     }
 }
 
-/// Writes small pictures of all scenes, by all methods and as PNG and EXR files, into a folder.
+/// Writes small pictures of the scenes in [`SCENES`] into a folder: by each method, as PNG and EXR
+/// files.
 fn draw(folder: &Path) {
     for name in SCENES {
         let scene = example(name, 32, 24);

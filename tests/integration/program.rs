@@ -11,8 +11,8 @@ use std::{
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Returns a command that runs the program in a folder. Settings of the environment for the
-/// language and the terminal do not affect it.
+/// Returns a command that runs the program in a folder. The locale and the variables `NO_COLOR` and
+/// `NO_GRAPHICS` of the caller's environment do not affect it.
 pub fn command(folder: &Path, arguments: &[impl AsRef<OsStr>]) -> Command {
     any_command(env!("CARGO_BIN_EXE_pinhole"), folder, arguments)
 }
@@ -29,7 +29,7 @@ fn any_command(program: &str, folder: &Path, arguments: &[impl AsRef<OsStr>]) ->
     command
 }
 
-/// Returns the names of the entries of a folder, sorted.
+/// Returns the sorted names of the entries of a folder.
 pub fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
     let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -151,8 +151,8 @@ impl Folder {
         let mut command = self.command(line);
         let command = command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
-        // Writing fails if the command has ended without reading its input. This is no error of the
-        // command, so it is ignored.
+        // Writing fails if the command ends without reading its input. A command may do so, so the
+        // failure is ignored.
         let _ = child.stdin.take().unwrap().write_all(input.as_ref());
         child.wait_with_output().unwrap().into()
     }

@@ -1,5 +1,5 @@
-//! Tests of coarse pictures, whose blocks show the colours at their centres, and which become finer
-//! in steps.
+//! Tests of previews: the picture is first rendered in large blocks, each in the colour at its
+//! centre, and then in smaller and smaller blocks.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -16,7 +16,9 @@ use crate::scenes::{example, example_names, rendered, whole, with_samples};
 fn threads_and_crops_change_no_pixel() {
     let pictures =
         Method::SAMPLED.map(|method| ([61, 37], method, Count::Total(61 * 37 * 5 + 300)));
-    // The exact picture has tiles of all sizes, and more tiles than threads.
+    // The exact picture consists of tiles, i.e. squares of pixels that one thread renders at a
+    // time. It is large enough to have more tiles than threads, and tiles that the picture's edge
+    // cuts off.
     let exact = ([201, 140], Method::Exact, Count::PerPixel(1));
     for ([width, height], method, count) in pictures.into_iter().chain([exact]) {
         let scene = with_samples(&example("figure_9_9", width, height), method, count);

@@ -25,15 +25,15 @@ const MEGABYTE: usize = 1 << 20;
 
 const CAMERA: &str = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
 
-/// Reads a text, and formats its diagnostics in every form. Returns whether the text is a valid
-/// scene.
+/// Reads a text, and formats its diagnostics as JSON and for people. Returns whether the text is a
+/// valid scene.
 #[track_caller]
 pub fn read(bytes: impl Into<Vec<u8>>) -> bool {
     read_with_sets(bytes, &[])
 }
 
-/// Reads a text with `--set` arguments, and formats its diagnostics in every form. Returns whether
-/// the result is a valid scene.
+/// Reads a text with `--set` arguments, and formats its diagnostics as JSON and for people. Returns
+/// whether the result is a valid scene.
 #[track_caller]
 fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let bytes = bytes.into();

@@ -28,7 +28,6 @@ pub fn scenes(folder: impl AsRef<Path>) -> Vec<PathBuf> {
     scenes
 }
 
-/// Returns the texts of the example scenes.
 pub fn examples() -> Vec<String> {
     let names = example_names().into_iter();
     names.map(|name| example_text(&name)).collect()
@@ -118,8 +117,8 @@ pub fn exact(scene: &Scene) -> Exact {
     render_exact(&World::new(scene), whole(scene), &Control::default()).unwrap()
 }
 
-/// Returns the contents of fenced blocks of a document. Only those blocks count whose first line is
-/// three backticks and `kind`.
+/// Returns the contents of those fenced code blocks of a document that begin with three backticks
+/// and `kind`.
 pub fn fenced<'p>(text: &'p str, kind: &str) -> Vec<&'p str> {
     let start = format!("```{kind}\n");
     let parts = text.split(&start).skip(1);

@@ -13,8 +13,8 @@ use pinhole::{
 
 use crate::{diagnostics::fixtures, scenes::scenes, snapshot::assert_file};
 
-/// Prints a syntax tree with one item or field per line and with chains of operators in brackets.
-/// Then prints the comments and problems.
+/// Prints a syntax tree with one item or field per line, and then the comments and problems.
+/// Brackets surround each sequence of operators and operands, such as `[1 + 2 + 3]`.
 fn printed(source: &Source, parsed: &Parsed<'_>) -> String {
     let under = |span: Span| {
         let words = source.slice(span.range()).split_whitespace();

@@ -23,14 +23,16 @@ fn peak_threads(command: &mut Command) -> usize {
     most
 }
 
-/// Asserts that the program renders with the requested number of threads, one or six. It has a few
-/// other threads: the main thread, and threads that wait for Ctrl-C.
+/// Asserts that the program renders with the requested number of threads, for one and for six. For
+/// one, up to four threads are allowed in total, because the main thread and threads that wait for
+/// Ctrl-C are counted, too.
 fn assert_thread_limit(folder: &Folder, line: &str) {
     let most =
         |threads: u32| peak_threads(&mut folder.command(&format!("{line} --threads {threads}")));
     let one = most(1);
     assert!(one <= 4, "{one}");
-    // On a busy machine, the program may end before all its threads are observed.
+    // On a busy machine, the program may end before all its threads are observed, so one success in
+    // 20 tries is enough.
     assert!((0..20).any(|_| most(6) >= 6));
 }
 

@@ -247,7 +247,7 @@ fn a_burst_of_saves_ends_with_the_last_ones_picture() {
         watch.save(&scene(["navy", "teal", "gold", "plum"][round % 4]));
     }
     watch.becomes("lime");
-    // After the picture of the last save, no picture of an older save is written.
+    // No picture of an older save may be written after the picture of the last save.
     let said = watch.count("wrote");
     watch.becomes("blue");
     watch.wait("it is written", || watch.count("wrote") > said);
@@ -280,13 +280,13 @@ fn other_files_permissions_and_reads_trigger_no_picture() {
     let watch = Watch::of_red();
     watch.says("wrote", 1);
     watch.folder.write("other.txt", "not a scene");
-    // Editors set permissions after a save, and other programs read the file. Neither counts as a
-    // change.
+    // Editors set permissions after a save, and other programs read the file. Neither causes a new
+    // picture.
     let permissions = fs::metadata(watch.path("a.scn")).unwrap().permissions();
     fs::set_permissions(watch.path("a.scn"), permissions).unwrap();
     watch.folder.read("a.scn");
-    // The wait is longer than the time without events after which a series of events counts as
-    // ended.
+    // The program renders after a short time without changes of the folder. The wait is longer than
+    // this time. A change of another kind than a save would therefore cause a picture of its own.
     thread::sleep(Duration::from_millis(100));
     watch.becomes("blue");
     watch.wait("it says so", || watch.count("wrote") >= 2);
@@ -300,7 +300,8 @@ fn saving_an_unchanged_text_renders_it_again() {
     fs::remove_file(watch.path("a.png")).unwrap();
     watch.becomes("red");
     watch.says("after the save", 1);
-    // This time, the editor saves a new file and renames it to the name of the scene's file.
+    // The file is not written in place here. Instead, a new file is renamed to the name of the
+    // scene's file, as some editors do.
     fs::remove_file(watch.path("a.png")).unwrap();
     watch.replace(&scene("red"));
     watch.shows("red");

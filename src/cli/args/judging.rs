@@ -10,27 +10,26 @@ use crate::{area::Area, film::DECODED_LIMIT};
 /// Arguments of `diff`.
 #[derive(Debug, clap::Args)]
 pub struct DiffArgs {
-    /// A picture (PNG, EXR, PPM, PGM, PAM, BMP, TIFF, WebP, GIF or JPEG) or `-` for standard
-    /// input; whole numbers count as sRGB and floats as linear light, and what is transparent
-    /// is seen on black
+    /// A picture (PNG, EXR, PPM, PGM, PAM, BMP, TIFF, WebP, GIF or JPEG) or `-` for standard input;
+    /// integers are read as sRGB, floats as linear light, and transparent pixels are shown on black
     pub a: PathBuf,
-    /// Another picture, or a scene whose exact picture A is compared with
+    /// Another picture, or a scene; the exact picture of a scene is compared with A
     pub b: PathBuf,
-    /// Write a heat map of the differences to this PNG file: black, red, yellow, white, linear in
-    /// steps of sRGB
+    /// Write a heat map of the differences to this PNG file: black within the tolerance, then red,
+    /// yellow and white, linear in sRGB
     #[arg(short, long = "output", value_name = "HEATMAP")]
     pub output: Option<PathBuf>,
-    /// How much a pixel may differ, in steps of 8-bit sRGB [default: what rounding explains, 0.5
-    /// for each picture of 8 bits, 0.002 for one of 16, 0.06 for an EXR of half floats and next to
-    /// nothing for one of floats; the exact picture's own bound, as good as nothing, always comes
-    /// on top]
+    /// Maximum difference of a pixel, in steps of 8-bit sRGB [default: the rounding error of the
+    /// files: 0.5 for each 8-bit picture, 0.002 for a 16-bit one, 0.06 for an EXR of half floats
+    /// and 0.00001 for other floats; the error bound of an exact picture, usually tiny, is always
+    /// added]
     #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = not_negative)]
     pub tolerance: Option<f64>,
-    /// The part of the scene's picture that A shows, unless A says so itself
+    /// The part of the scene that picture A shows, if A's file does not store its crop
     #[arg(long, value_name = "X,Y,W,H")]
     pub crop: Option<Area>,
-    /// Let the tolerance alone decide the exit status, so that sampling noise counts; --tolerance
-    /// implies it
+    /// Let the tolerance alone decide the exit status: a picture that differs only by sampling
+    /// noise fails, too; --tolerance implies --strict
     #[arg(long)]
     pub strict: bool,
     #[command(flatten)]
@@ -54,17 +53,15 @@ pub struct GradeArgs {
     /// Gradescope and GitHub Classroom hand them out
     #[arg(required = true, value_name = "PICTURE")]
     pub pictures: Vec<PathBuf>,
-    /// The folder for index.html, its pictures, grade.csv and grade.jsonl; it is made if it is
-    /// missing, and keeps a list `.pinhole` of what was made there: any other file in the way is
-    /// refused
+    /// The folder for index.html, its pictures, grade.csv and grade.jsonl. It is created if it is
+    /// missing. Its file `.pinhole` lists what Pinhole wrote; other files are never overwritten
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
-    /// Which files of a student may be the picture, such as `render*.png` or `out/**`; of
-    /// several, the newest [default: every file with a picture's ending]
+    /// Which files of a student may be the picture, such as `render*.png` or `out/**`. If several
+    /// match, the newest is judged [default: every file with the extension of a picture]
     #[arg(long, value_name = "GLOB")]
     pub picture: Option<String>,
-    /// The part of the scene's picture that pictures of its size show, unless they say so
-    /// themselves
+    /// The part of the scene that pictures of this size show, unless their files store another crop
     #[arg(long, value_name = "X,Y,W,H")]
     pub crop: Option<Area>,
     /// A JSON file that says what a right picture gets and what each mistake takes off
@@ -73,7 +70,8 @@ pub struct GradeArgs {
     /// Moodle's worksheet of grades, to be filled in by --format moodle
     #[arg(long, value_name = "FILE")]
     pub worksheet: Option<PathBuf>,
-    /// A column's heading in the worksheet, such as `Grade=Bewertung`; may be given several times
+    /// A column's heading in the worksheet, if it is translated, such as `Grade=Bewertung`; may be
+    /// given several times
     #[arg(long, value_name = "COLUMN=HEADING")]
     pub columns: Vec<String>,
     #[command(flatten)]
@@ -100,7 +98,7 @@ pub enum GradeFormat {
     Csv,
     /// JUnit XML, as systems of continuous integration show it
     Junit,
-    /// Gradescope's results.json: of one student on standard output, of several in DIR/STUDENT/
+    /// Gradescope's results.json: for one student on standard output, for several in DIR/STUDENT/
     Gradescope,
     /// Moodle's worksheet, filled in: on standard output, or in DIR
     Moodle,
@@ -124,8 +122,8 @@ fn effort(text: &str) -> Result<f64, String> {
 /// Arguments that set how large pictures may be.
 #[derive(Debug, clap::Args)]
 pub struct LargeArgs {
-    /// Read pictures of more than 256 MiB, or of more than 2^28 bytes once they are decoded, as
-    /// long as there is memory for them
+    /// Read pictures whose file, or whose decoded pixels, take more than 256 MiB, as long as there
+    /// is memory for them
     #[arg(long)]
     pub large: bool,
 }

@@ -56,7 +56,7 @@ pub enum Command {
     /// Judge a class's pictures of a scene
     #[command(after_help = help::GRADE_EXAMPLES)]
     Grade(GradeArgs),
-    /// Report speed against error, method by method, or how right the arithmetic is
+    /// Report speed against error for each method, or how accurate the arithmetic is
     #[command(after_help = help::REPORT_EXAMPLES)]
     Report(ReportArgs),
     /// Make a contact sheet: the pictures of scenes side by side, each with its name
@@ -140,14 +140,14 @@ impl ThreadArgs {
 pub struct RenderArgs {
     /// The scene: a .scn file, a PNG that Pinhole wrote, or `-` for standard input
     pub scene: PathBuf,
-    /// Where the picture goes; its ending, .png or .exr, is the format, and `-` is standard output
-    /// as PNG [default: SCENE with the ending .png]
+    /// Where the picture goes: a file that ends in .png or .exr, which selects the format, or `-`
+    /// for PNG on standard output [default: SCENE with the ending .png]
     #[arg(short, long = "output", value_name = "FILE")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
     pub overrides: Overrides,
-    /// Render this part only, in pixels from the top left of the whole picture, within which it
-    /// must lie; takes the place of the crop that a PNG carries
+    /// Render only this part of the picture, in pixels from its top left. It must lie within the
+    /// picture, and replaces a crop that a PNG stores
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
     pub crop: Option<Area>,
     #[command(flatten)]
@@ -160,10 +160,10 @@ pub struct CheckArgs {
     /// The scenes: .scn files, PNGs that Pinhole wrote, or `-` for standard input
     #[arg(required = true, value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
-    /// Apply the safe fixes of errors: those that keep all that was written and have one meaning
+    /// Apply the safe fixes of errors: those that delete nothing and leave no doubt what was meant
     #[arg(long)]
     pub fix: bool,
-    /// With --fix, apply also fixes that choose among meanings, or remove or change something
+    /// With --fix, also apply fixes that guess what was meant, or that remove or change something
     #[arg(long = "unsafe", requires = "fix")]
     pub unsafe_fixes: bool,
     /// With --fix, print the changes as a unified diff, and write nothing
@@ -187,8 +187,8 @@ pub struct NewArgs {
 pub struct WatchArgs {
     /// The scene: a .scn file
     pub scene: PathBuf,
-    /// Where the picture goes; its ending, .png or .exr, is the format [default: SCENE with the
-    /// ending .png]
+    /// Where the picture goes: a file that ends in .png or .exr, which selects the format [default:
+    /// SCENE with the ending .png]
     #[arg(short, long = "output", value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Draw the picture in the terminal too
@@ -252,11 +252,11 @@ pub struct SheetArgs {
     /// Where the sheet goes: a file that ends in .png, or `-` for standard output
     #[arg(short, long = "output", value_name = "FILE")]
     pub output: PathBuf,
-    /// Show each scene N times, a field or a `let` going from one value to another: two numbers,
-    /// angles or vectors
+    /// Show each scene N times, while a field or a `let` changes evenly from one value to another;
+    /// the values may be numbers, angles or vectors
     #[arg(long, value_name = "TARGET=FROM..TO/N", allow_hyphen_values = true)]
     pub sweep: Option<Sweep>,
-    /// Pictures beside each other [default: about as many as there are rows]
+    /// Number of pictures in a row [default: about as many as there are rows]
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1000))]
     pub columns: Option<u32>,
     /// The greatest width and height of a picture in pixels
@@ -280,8 +280,8 @@ pub struct FigureArgs {
     /// Where the figure goes: a file that ends in .svg, or `-` [default: standard output]
     #[arg(short, long = "output", value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// The pixel, by its column and row from 0 [default: of `pixel` one with an edge of several
-    /// colours, of `camera` one that shows the largest object, of `methods` 0,0]
+    /// The pixel, by its column and row from 0 [default: for `pixel`, one with an edge between
+    /// several colours; for `camera`, one that shows the largest object; for `methods`, 0,0]
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = pixel)]
     pub pixel: Option<[u32; 2]>,
     /// The triangle, by its name [default: the first one]
@@ -299,35 +299,35 @@ pub struct ReportArgs {
     #[arg(value_name = "SCENE", required_unless_present = "numerics")]
     pub scenes: Vec<PathBuf>,
     /// The folder for index.html (a page with charts, tables and pictures), both charts as SVG,
-    /// report.csv and report.json; of several scenes each has a folder in it. It is made if it is
-    /// missing, and keeps a list `.pinhole` of what was made there: any other file in the way, or
-    /// a symbolic link, is refused
+    /// report.csv and report.json; with several scenes, each has a subfolder. It is created if it
+    /// is missing. Its file `.pinhole` lists what Pinhole wrote; other files are never overwritten
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
     /// The methods [default: all]
     #[arg(long, value_delimiter = ',', value_parser = method())]
     pub methods: Vec<Method>,
-    /// Samples per pixel [default: 1,4,16 and so on, until all methods have come to the errors or
-    /// the time is up]
+    /// Samples per pixel [default: 1, 4, 16 and so on, until all methods have reached the errors of
+    /// --error or the time is up]
     #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = value_parser!(u64).range(1..=1 << 53))]
     pub samples: Vec<u64>,
-    /// Runs of each method with each number of samples [default: up to 9, as the time goes]
+    /// Number of runs of each method with each number of samples [default: up to 9, as long as time
+    /// is left]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value_parser!(u64).range(1..=1_000_000))]
     pub runs: Option<u64>,
-    /// Tell the samples and the time that this error takes, too, in linear light, such as 0.01 or
-    /// 1/1000: 1/256 is always among them; may be given any number of times
+    /// Also report how many samples and how much time are needed for this RMS error in linear
+    /// light, such as 0.01 or 1/1000; 1/256 is always reported; may be given any number of times
     #[arg(long = "error", value_name = "E", allow_negative_numbers = true, value_parser = error)]
     pub errors: Vec<f64>,
-    /// About how long a scene may take, where --samples and --runs leave a choice
+    /// About how many seconds a scene may take; ignored if both --samples and --runs are given
     #[arg(long, value_name = "SECONDS", default_value_t = 45, allow_negative_numbers = true, value_parser = value_parser!(u64).range(1..=1_000_000))]
     pub budget: u64,
     #[command(flatten)]
     pub overrides: Overrides,
-    /// Count the wrong decisions in a catalogue of hard cases instead, against arithmetic of
-    /// hundreds of bits and beside the formulas of a textbook
+    /// Test accuracy instead of speed: count how often decisions in hard cases differ from those of
+    /// high-precision arithmetic; textbook formulas are counted, too
     #[arg(long, conflicts_with_all = ["scenes", "output", "methods", "samples", "runs", "errors", "budget", "sets"])]
     pub numerics: bool,
-    /// How many inputs to ask of each case [default: 10000]
+    /// Number of random inputs to test in each hard case [default: 10000]
     #[arg(long, value_name = "N", requires = "numerics", conflicts_with = "scenes", allow_negative_numbers = true, value_parser = value_parser!(u64).range(1..=1_000_000_000_000))]
     pub inputs: Option<u64>,
     #[command(flatten)]
@@ -339,7 +339,7 @@ pub struct ReportArgs {
 /// Arguments of `fmt`.
 #[derive(Debug, clap::Args)]
 pub struct FmtArgs {
-    /// The scenes: .scn files, or `-` for standard input, which is laid out to standard output
+    /// The scenes: .scn files, or `-` to format standard input and write it to standard output
     #[arg(required = true, value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
     /// Write nothing; print what would change as a diff, and end with status 1 if anything would
@@ -350,8 +350,8 @@ pub struct FmtArgs {
 /// Arguments of `explain`.
 #[derive(Debug, clap::Args)]
 pub struct ExplainArgs {
-    /// The code that stands in the brackets of a report, with `pinhole::` or without, a word of
-    /// the language or of the reference, or `language` [default: list all codes]
+    /// What to explain: a code in brackets from an error message, with `pinhole::` or without; a
+    /// word of the language or of its reference; or `language` [default: list all codes]
     #[arg(value_name = "WORD")]
     pub words: Vec<String>,
 }
@@ -359,7 +359,7 @@ pub struct ExplainArgs {
 /// Arguments that select the output format of an answer.
 #[derive(Debug, clap::Args)]
 pub struct FormatArgs {
-    /// For people, on standard error, or for programs, on standard output
+    /// Output for people, on standard error, or for programs, on standard output
     #[arg(long, value_enum, default_value_t = AnswerFormat::Human)]
     pub format: AnswerFormat,
 }

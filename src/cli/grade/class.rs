@@ -29,15 +29,15 @@ use crate::{
     files,
 };
 
-/// Reason, shown to the teacher, why a picture is not compared: every submission contains it, so it
-/// comes from the assignment's template.
+/// Reason, shown to the teacher, why a file is not judged: every submission contains the same file,
+/// so it comes from the assignment's template.
 const TEMPLATE: &str = "equal in every folder: --picture chooses it";
 
 /// The students of a class, with their files.
 #[derive(Debug, Default)]
 pub struct Class {
     pub students: Vec<Student>,
-    /// Whether one of the pictures on the command line does not exist or cannot be opened.
+    /// Whether at least one picture on the command line does not exist or cannot be opened.
     pub is_one_missing: bool,
     /// Number of bytes that may still be unpacked from the class's zip files.
     pub budget: UnpackBudget,
@@ -77,8 +77,8 @@ impl Class {
         Ok(class)
     }
 
-    /// Adds the students of a folder or zip file. It may also contain folders of whole classes,
-    /// whose students are then added as well.
+    /// Adds the students of a folder or zip file. If it contains folders of whole classes, their
+    /// students are added, too.
     fn add(&mut self, folder: Option<String>, mut tree: FileTree, chosen: Option<&Glob>) {
         for (name, inner) in tree.take_classes() {
             self.add(Some(name), inner, chosen);
@@ -291,11 +291,11 @@ fn with_companions(students: Vec<Student>) -> Vec<Student> {
     kept
 }
 
-/// Finds the arguments that a shell expanded from a pattern such as `class/*`. Each of these
-/// arguments is a student, and the folder that contains them is a class. Returns each such folder
-/// with the names of its arguments. A folder counts as a class if one of its arguments is a Git
-/// clone, has a name in Moodle's form, or is Gradescope's metadata file, or if two of its arguments
-/// contain a picture of the same name.
+/// Finds the arguments that a shell expanded from a pattern such as `class/*`. Returns each folder
+/// that contains a class, with the names of the arguments in it, which are students.
+///
+/// A folder contains a class if one of its arguments is a Git clone, has a name in Moodle's form,
+/// or is Gradescope's metadata file, or if two of its arguments contain pictures of the same name.
 fn expanded_classes(paths: &[PathBuf]) -> BTreeMap<&Path, BTreeSet<&OsStr>> {
     let mut named = BTreeMap::<&Path, BTreeSet<&OsStr>>::new();
     for path in paths {

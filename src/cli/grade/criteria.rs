@@ -12,7 +12,7 @@ use crate::{
 /// Criterion to which a mistake in a picture belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Criterion {
-    /// Mistakes in the camera, or in the window through which it sees the scene.
+    /// Mistakes in the camera, or in the image plane's rectangle through which it sees the scene.
     Camera,
     /// Mistakes in an object other than a checkerboard, given by the object's index in the scene.
     Object(usize),
@@ -27,9 +27,9 @@ pub enum Criterion {
     Hits,
 }
 
-/// Criteria, each with prefixes that are separated by spaces. A mistake belongs to a criterion if
-/// the mistake's id begins with one of the criterion's prefixes. An id that begins with none of the
-/// prefixes is the name of a field of the camera or of an object.
+/// Criteria, each with the beginnings of its mistakes' ids, separated by spaces. For example,
+/// `board_` stands for all ids that begin with `board_`. An id that is not found here is the name
+/// of a field of the camera or of an object.
 const BEGINNINGS: &[(Criterion, &str)] = &[
     (Criterion::Board, "board_"),
     (
@@ -55,7 +55,7 @@ const BEGINNINGS: &[(Criterion, &str)] = &[
 
 /// Returns the criterion that a mistake belongs to.
 pub fn criterion(mistake: &NamedMistake, scene: &Scene) -> Criterion {
-    if let Some(index) = object(mistake, scene) {
+    if let Some(index) = mistake.object {
         return match scene.objects[index].shape.checkerboard() {
             Some(_) => Criterion::Board,
             None => Criterion::Object(index),
@@ -81,21 +81,8 @@ fn of_id(id: &str) -> Option<Criterion> {
     }
 }
 
-/// Returns the index of the object that a mistake is about, or `None` if it is about no object. The
-/// mistake's message then begins with the object's title.
-pub fn object(mistake: &NamedMistake, scene: &Scene) -> Option<usize> {
-    let title = |index: usize| {
-        let object = &scene.objects[index];
-        match &object.name {
-            Some(name) => format!("the {} {name} ", object.shape.kind()),
-            None => format!("the {} with the index {index} ", object.shape.kind()),
-        }
-    };
-    (0..scene.objects.len()).find(|&index| mistake.message.starts_with(&title(index)))
-}
-
-/// Returns the ids of all mistakes in alphabetical order. They are the ids in the table of mistakes
-/// and the names of all fields whose values may be wrong.
+/// Returns the ids of all kinds of mistakes in alphabetical order. The names of fields are among
+/// them, because a field's value may be wrong.
 pub fn ids() -> impl Iterator<Item = &'static str> {
     let blocks = schema::block_names().filter(|name| *name != "sampler");
     let fields = blocks

@@ -14,9 +14,9 @@ use crate::{
     scene::{Scene, Shape},
 };
 
-/// Returns the content of `results.json` for a student, with a test for each criterion. Without
-/// `--points`, each test counts one point. If the picture is wrong for unknown reasons, no scores
-/// are written, so that the teacher decides.
+/// Returns the content of `results.json` for a student. Each criterion, such as the camera or an
+/// object, is a test in Gradescope. Without `--points`, each test counts one point. If the picture
+/// is wrong for unknown reasons, no scores are written, so that the teacher decides.
 pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>) -> Value {
     let Ok(judged) = one.best() else {
         return whole(one, None, Vec::new());
@@ -26,7 +26,7 @@ pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>)
     let shares = shares(&criteria, points);
     let mut scores = shares.clone();
     let mistakes = &judged.verdict.mistakes;
-    let off = points.map(|points| points.taken_off(judged, scene));
+    let off = points.map(|points| points.taken_off(judged));
     for (at, mistake) in mistakes.iter().enumerate() {
         let of = criterion(mistake, scene);
         if let Some(test) = criteria.iter().position(|(one, _)| *one == of) {
@@ -56,7 +56,7 @@ pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>)
     });
     let tests = tests.collect();
     let score = match points {
-        Some(points) => points.score(judged, scene),
+        Some(points) => points.score(judged),
         None => is_known.then(|| scores.iter().sum()),
     };
     whole(one, score, tests)
@@ -133,7 +133,7 @@ pub fn folders(graded: &[GradedStudent]) -> Vec<String> {
         };
         let name: String = one.name.chars().map(plain).take(60).collect();
         let name = name.trim_matches('.');
-        // Windows reserves names such as `con`, even with an extension.
+        // Windows reserves names such as `con`, so an underscore is put before them.
         let base = match name {
             "" => "student".to_owned(),
             name if is_reserved(name) => format!("_{name}"),
@@ -155,8 +155,8 @@ fn is_reserved(name: &str) -> bool {
         let rest = stem.strip_prefix(word);
         rest.is_some_and(|rest| rest.len() == 1 && rest != "0")
     };
-    // Windows reserves the first four names. The others belong to files and to the folder that
-    // `grade` writes for its HTML page.
+    // Windows does not allow the first four names for files. The others are rejected, too, since
+    // `grade` writes files or a folder of these names beside the students' folders.
     matches!(
         &*stem,
         "con" | "prn" | "aux" | "nul" | "pictures" | "index" | "grade"

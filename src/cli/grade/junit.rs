@@ -33,7 +33,7 @@ pub fn junit(scene: &str, graded: &[GradedStudent]) -> String {
         };
         let message = attribute(&one.line());
         let word = match kind {
-            // In JUnit XML, `skipped` has no attribute `type`.
+            // In JUnit XML, the element `skipped` has no attribute `type`, so nothing is written.
             "skipped" => String::new(),
             _ => format!(" type=\"{}\"", one.word()),
         };
@@ -46,8 +46,8 @@ pub fn junit(scene: &str, graded: &[GradedStudent]) -> String {
     xml + "  </testsuite>\n</testsuites>\n"
 }
 
-/// Escapes a text for an XML attribute. The characters U+FFFE and U+FFFF are replaced, since XML
-/// allows them in no form.
+/// Escapes a text for an XML attribute. XML forbids the characters U+FFFE and U+FFFF even in
+/// escaped form, so they are replaced.
 fn attribute(text: &str) -> String {
     escaped(text).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
 }

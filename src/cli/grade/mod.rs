@@ -81,9 +81,7 @@ pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     mark_equal(&mut graded);
     for one in &mut graded {
         let judged = one.best().ok();
-        one.score = points
-            .as_ref()
-            .and_then(|points| points.score(judged?, &scene));
+        one.score = points.as_ref().and_then(|points| points.score(judged?));
     }
     for one in &graded {
         if let Some(warning) = one.best().ok().and_then(|judged| judged.warning) {
@@ -254,7 +252,7 @@ fn mark_equal(graded: &mut [GradedStudent]) {
     }
 }
 
-/// The results of all students, and the scene's exact picture as a PNG file. Its bytes are empty if
+/// The results of all students, and the scene's exact picture as a PNG file. The file is empty if
 /// no HTML page is written.
 type Answers = (Vec<GradedStudent>, Vec<u8>);
 
@@ -274,7 +272,7 @@ fn graded(
         reference.map(|reference| reference.with_effort(args.effort.effort))
     })?;
     let exact = match args.output {
-        // Writing into memory does not fail.
+        // Writing into memory does not fail, so an error need not be handled.
         Some(_) => thumbnails::png(&reference.exact.film).unwrap_or_default(),
         None => Vec::new(),
     };

@@ -149,9 +149,8 @@ fn scalar(text: &str) -> String {
     }
 }
 
-/// Decodes the escapes in a double-quoted YAML text (YAML 1.2.2, section 5.7). Returns `None` if an
-/// escape is invalid. Gradescope's files contain escapes for all characters above U+FFFF, for
-/// example.
+/// Decodes the escapes in a double-quoted YAML text (YAML 1.2.2, section 5.7). Gradescope escapes
+/// all characters above U+FFFF, for example. Returns `None` if an escape is invalid.
 fn unescaped(text: &str) -> Option<String> {
     let mut chars = text.chars();
     let mut plain = String::new();

@@ -9,14 +9,13 @@ use crate::{
     cli::{Trouble, input::unreadable},
     files,
     grading::Kind,
-    scene::Scene,
 };
 
 /// Maximum length of the file in `--points`, in bytes. A longer file is an error. A scheme of
 /// points is a short text, so the limit only keeps a wrong file from filling the memory.
 const LIMIT: u64 = 1 << 20;
 
-/// Key in the JSON object `mistakes` that stands for all mistakes that are not named there.
+/// Key in the JSON object `mistakes` that stands for all mistakes without a key of their own.
 const OTHERS: &str = "*";
 
 /// A scheme of points, read from the file in `--points`.
@@ -24,8 +23,8 @@ const OTHERS: &str = "*";
 pub struct PointScheme {
     /// Points for a right picture.
     pub total: f64,
-    /// Points that a wrong object costs. They are subtracted once per object, however many mistakes
-    /// it has. Mistakes that are named in `mistakes` are subtracted separately instead.
+    /// Points that a wrong object costs, however many mistakes it has. A mistake that is listed in
+    /// `mistakes` costs the points given there instead.
     pub object: Option<f64>,
     /// Points that each mistake costs, by the mistake's id. The key [`OTHERS`] stands for all other
     /// ids.
@@ -94,11 +93,11 @@ impl PointScheme {
     }
 
     /// Returns the points of a picture; `None` if the picture is wrong for unknown reasons.
-    pub fn score(&self, judged: &JudgedPicture, scene: &Scene) -> Option<f64> {
+    pub fn score(&self, judged: &JudgedPicture) -> Option<f64> {
         match judged.verdict.kind {
             Kind::Right | Kind::Noise => Some(self.total),
             Kind::Wrong => {
-                let off: f64 = self.taken_off(judged, scene).iter().sum();
+                let off: f64 = self.taken_off(judged).iter().sum();
                 Some((self.total - off).max(0.0))
             }
             Kind::Unknown => None,
@@ -106,13 +105,12 @@ impl PointScheme {
     }
 
     /// Returns the points that each mistake of a picture costs, in the order of the mistakes.
-    pub fn taken_off(&self, judged: &JudgedPicture, scene: &Scene) -> Vec<f64> {
+    pub fn taken_off(&self, judged: &JudgedPicture) -> Vec<f64> {
         let mut objects = Vec::new();
         let mistakes = &judged.verdict.mistakes;
         let points = mistakes.iter().map(|mistake| {
             let listed = self.mistakes.get(mistake.id).copied();
-            let object = criteria::object(mistake, scene);
-            match (listed, object, self.object) {
+            match (listed, mistake.object, self.object) {
                 (Some(points), ..) => points,
                 (None, Some(object), Some(_)) if objects.contains(&object) => 0.0,
                 (None, Some(object), Some(points)) => {

@@ -12,8 +12,8 @@ use crate::cli::{
     judge,
 };
 
-/// Maximum difference, in seconds, between modification times that count as equal. Zip files store
-/// times in units of two seconds, so equal times may differ by that much.
+/// Maximum difference, in seconds, between modification times that are treated as equal. Zip files
+/// store times in units of two seconds, so equal times may differ by up to two seconds.
 const SAME_TIME: i64 = 2;
 
 /// Maximum number of a student's pictures that are compared if several are equally new. The others
@@ -68,12 +68,8 @@ pub enum ContentSource {
 }
 
 impl SubmittedFile {
-    /// Reads a file that should be a picture. A file on disk that does not begin as a picture does
-    /// is not read completely.
-    ///
-    /// # Errors
-    ///
-    /// The file cannot be read; the message says why.
+    /// Reads a file that should be a picture. If the first bytes of a file on disk are not those of
+    /// a picture, only the start of the file is read.
     pub fn picture(&self, large: &LargeArgs, budget: &UnpackBudget) -> Result<Vec<u8>, String> {
         match &self.content {
             ContentSource::File(path) => {
@@ -112,7 +108,7 @@ pub struct PictureChoice<'s> {
 
 impl Student {
     /// Returns the student's newest picture. Returns several pictures if they are equally new, or
-    /// if their times have no meaning.
+    /// if it is unknown which is newest, for example in a Git clone.
     pub fn choice(&self, chosen: Option<&Glob>) -> PictureChoice<'_> {
         let is_picture = |file: &&SubmittedFile| file.is_picture(chosen);
         let (mut pictures, others): (Vec<_>, Vec<_>) = self.files.iter().partition(is_picture);

@@ -6,8 +6,8 @@ use std::io;
 use crate::film::{self, Film, Tolerance};
 
 /// Maximum width and height of a thumbnail, in pixels. A larger picture is reduced. The page shows
-/// thumbnails 160 CSS pixels wide; twice as many are sharp on screens with two pixels per CSS
-/// pixel.
+/// thumbnails 160 CSS pixels wide. With twice as many picture pixels, they are sharp on screens
+/// with two pixels per CSS pixel.
 const LONGEST: u32 = 320;
 
 /// The pictures of a student that the HTML page shows.

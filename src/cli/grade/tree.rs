@@ -31,8 +31,8 @@ const MOST_FILES: usize = 200_000;
 /// less deeply.
 const DEEPEST: usize = 40;
 
-/// Maximum depth of folders that are recorded by name. At most two levels are needed: folders of
-/// classes, and the students' folders in them.
+/// Maximum depth of folders that are recorded, so that empty folders are not lost. Two levels
+/// suffice: folders of classes, and the students' folders in them.
 const NAMED: usize = 2;
 
 /// A file, with its path as a list: the names of the folders that contain it, then its own name.
@@ -78,12 +78,8 @@ impl FileTree {
         Ok(tree)
     }
 
-    /// Lists a zip file. If everything in it is in one folder that seems to be a class's, lists the
-    /// content of this folder.
-    ///
-    /// # Errors
-    ///
-    /// The file cannot be read; the message says why.
+    /// Lists a zip file. If everything in it is in one folder that has several entries and seems to
+    /// contain a class, lists the content of this folder.
     pub fn of_zip(path: &Path) -> Result<Self, String> {
         let mut tree = Self::at(path);
         tree.unpack(path, &[])?;
@@ -272,8 +268,8 @@ impl FileTree {
         let mut inner = BTreeMap::<&str, Vec<&str>>::new();
         for names in files.chain(&self.folders) {
             match &names[..] {
-                // If the metadata file is at the top, the tree itself is the class, so no subfolder
-                // is one.
+                // If the metadata file is at the top, the whole tree is one class, so its
+                // subfolders are not classes.
                 [name] if name == METADATA => return Vec::new(),
                 [root, name, ..] => inner.entry(root).or_default().push(name),
                 _ => {}

@@ -79,7 +79,7 @@ pub fn parse(range: &str, unit: Option<Unit>) -> Result<CommentRange, String> {
 }
 
 /// Parses a number of a range, and converts it to `unit`, the unit of the slider's value. A number
-/// without a unit of its own is taken as it is. Returns the number, and whether it was converted.
+/// without a unit is not converted. Returns the number, and whether it was converted.
 fn in_unit(written: &str, unit: Option<Unit>) -> Result<(f64, bool), String> {
     let mut units = [Unit::Degrees, Unit::Radians].into_iter();
     let own = units.find(|unit| written.ends_with(unit.name()));

@@ -5,9 +5,9 @@ use crate::{
     syntax::tree::{Unit, Value, ValueKind},
 };
 
-/// Minimum decimal exponent of a slider's step, and of a literal that a slider changes. The maximum
-/// is its negative, 300. Powers of ten within these limits are well within the range of `f64`, so
-/// that none becomes 0 or infinite.
+/// Minimum decimal exponent of a slider's step; the maximum exponent is 300. Literals of a slider
+/// have exponents within the same limits. These powers of ten are far from the ends of `f64`'s
+/// range, so computations with them neither overflow nor become 0.
 const LEAST_EXPONENT: i32 = -300;
 
 /// Maximum number of significant digits of a number that a slider changes. The slider's step is at
@@ -68,9 +68,9 @@ impl Literal {
         self.unit.is_none() && self.value.fract() == 0.0 && self.last_digit >= 0
     }
 
-    /// Returns the step of the literal's slider, which is a power of ten: a hundredth to a tenth of
-    /// the number, but at least 0.01, so that the slider can reach zero. If the number has
-    /// decimals, the step is at most one unit in its last decimal.
+    /// Returns the step of the literal's slider, a power of ten. It is a hundredth to a tenth of
+    /// the number, but at least 0.01. If the last written decimal is smaller, the step is one unit
+    /// in this decimal.
     pub fn step(&self) -> f64 {
         let size = match self.value.abs() {
             0.0 => 0,
@@ -105,8 +105,8 @@ pub fn decimals(x: f64) -> usize {
     decimals.min(100)
 }
 
-/// Shrinks the range `[least, most]` until its ends have no more decimals than `step`. An end with
-/// few enough decimals is not changed.
+/// Shrinks the range `[least, most]` until its ends have no more decimals than `step`. An end that
+/// already satisfies this is not changed.
 pub fn inward([least, most]: [f64; 2], step: f64) -> [f64; 2] {
     let decimals_of_step = decimals(step);
     let scale = power_of_ten(decimals_of_step as i32);

@@ -1,9 +1,9 @@
 //! Computes the limits of a slider for a number in the text.
 //!
 //! If a comment after the definition gives a range, that range is used. Otherwise, the slider
-//! extends some steps to both sides of the number, within the conditions of the fields that use it.
-//! The text is also analyzed with other numbers in it, which shows how far the number can go
-//! without new errors.
+//! extends some steps to both sides of the number, within the values that are allowed in the fields
+//! that use the number. If an end of the slider would cause a new error in the text, the end is
+//! moved towards the number.
 
 mod comment;
 mod literal;
@@ -145,15 +145,15 @@ fn within(
 }
 
 /// Returns the limits of a number whose comment gives no range. The slider extends to both sides by
-/// the number's absolute value, or by [`STEPS`] or [`STEPS_OF_COUNT`] steps if those reach farther,
-/// but not beyond `bounds`. If the text would have more errors than now with the number at an end,
-/// that end is moved towards the current number.
+/// the number's absolute value or by [`STEPS`] steps ([`STEPS_OF_COUNT`] for whole numbers),
+/// whichever is more, but not beyond `bounds`. If an end would cause a new error in the text, it is
+/// moved towards the current number.
 fn tried(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> Limits {
     let is_count = trials.is_count(literal);
     if is_count {
         bounds.is_whole = true;
-        // A negative count causes no error if a formula, for example, squares it. So analyses with
-        // other numbers in the text would not exclude negative counts.
+        // A negative count need not cause an error, e.g. if a formula squares the count. So the
+        // lower bound 0 is set explicitly, unless the count is negative now.
         if literal.value >= 0.0 && bounds.least == f64::NEG_INFINITY {
             bounds.least = 0.0;
         }
@@ -170,8 +170,8 @@ fn tried(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> 
     let reach = middle.abs().max(steps * step);
     let ends = [middle - reach, middle + reach].map(|end| bounded(rounded(end, step)));
     let valid = ends.map(|end| trials.last_right(literal, end, step, is_count));
-    // If already the first step in each direction causes an error, the errors say nothing about the
-    // ends, so the ends are not moved.
+    // If even the first step in either direction causes an error, the slider keeps its ends.
+    // Otherwise its range would have length 0.
     let valid = if valid == [None, None] {
         ends
     } else {
@@ -200,8 +200,8 @@ impl Limits {
     }
 }
 
-/// Range that the schema allows for a number, by the conditions ([`Condition`]) on the fields that
-/// contain the number. Like the number itself, the range of an angle is in degrees or in radians.
+/// Range of the values that the language allows for a number in certain fields. For an angle, the
+/// range is in degrees or in radians, as the number is written.
 #[derive(Clone, Copy, Debug)]
 struct Bounds {
     least: f64,
@@ -221,8 +221,8 @@ const UNBOUNDED: Bounds = Bounds {
 };
 
 impl Bounds {
-    /// The conditions on a field bound each number in the field's value. Returns these bounds.
-    /// `unit` is the unit in which the number is written.
+    /// Returns the bounds of the numbers in the field's value, by the conditions on the field.
+    /// `unit` is the unit in which the numbers are written.
     fn of_field(field: &FieldRow, unit: Option<Unit>) -> Self {
         let two_to = |power: u32| (1_u64 << power) as f64;
         let mut bounds = UNBOUNDED;

@@ -13,8 +13,9 @@ use crate::{
 /// but the answer could take longer. With 64 KiB, a text of 1 KiB can be tried 64 times.
 const BYTES: usize = 1 << 16;
 
-/// Cost of making one object of a scene, as the number of bytes of text whose analysis takes
-/// equally long. A rough value suffices, since it serves only to limit the time of an answer.
+/// Cost of making one object of a scene, in bytes of text: making an object is assumed to take as
+/// long as the analysis of 12 bytes. A rough value suffices, since it serves only to limit the time
+/// of an answer.
 const OBJECT: usize = 12;
 
 /// Analyses of a text with another number in place of a literal. Their total cost is limited by
@@ -55,9 +56,9 @@ impl<'a, 's> Trials<'a, 's> {
         Some(errors(&tried) <= self.errors)
     }
 
-    /// Estimates how many objects the text contains if `value` takes the place of the literal
-    /// `count`. Assumes that `count` is the count of all indices of one block: the block with the
-    /// most indices.
+    /// Estimates how many objects the text contains if `value` replaces the literal `count`.
+    /// Assumes the worst case: in the block with the most `for` indices, `count` is the count of
+    /// each index.
     fn objects_with(&self, count: &Literal, value: f64) -> usize {
         let repetitions = self.analysis.blocks().flat_map(|it| &it.repetition);
         let indices = repetitions.map(|it| it.indices.len()).max().unwrap_or(0);
@@ -66,8 +67,8 @@ impl<'a, 's> Trials<'a, 's> {
         (0..indices).fold(objects, |all, _| all * growth) as usize
     }
 
-    /// Returns whether a number seems to be a count, as in `for i < n`. A number counts as one if
-    /// both adding and subtracting 0.1 cause an error, but adding or subtracting 1 does not.
+    /// Returns whether the literal seems to be a count, as in `for i < n`. It is a whole number,
+    /// both adding and subtracting 0.1 cause an error, and adding or subtracting 1 causes none.
     pub fn is_count(&mut self, literal: &Literal) -> bool {
         let mut is_right = |by: f64| {
             let value = rounded(literal.value + by, 0.1);
@@ -81,10 +82,11 @@ impl<'a, 's> Trials<'a, 's> {
 
     /// Searches the numbers between the literal and `end`, in steps of `step`, for the last one
     /// with which the text has no more errors than now. Uses bisection. Returns `end` if it is
-    /// valid or cannot be tried. Returns `None` if already the first step causes an error.
+    /// valid or cannot be tried. Returns `None` if even the first step causes an error.
     ///
-    /// If valid and invalid numbers alternate, returns one of the valid numbers whose next number
-    /// is invalid.
+    /// If the budget for trials runs out during the search, returns the last number found to be
+    /// valid, or `end` if none was found. If valid and invalid numbers alternate, returns one of
+    /// the valid numbers whose next number is invalid.
     pub fn last_right(
         &mut self,
         literal: &Literal,
@@ -129,8 +131,8 @@ mod tests {
     use super::*;
 
     /// Searches for the greatest valid n up to 14 in two texts. With n = 14, the second text would
-    /// contain 14^5 objects, half a million, because its five indices all have the count n. Such a
-    /// trial is too expensive, so none is made, and the budget `left` stays at [`BYTES`].
+    /// contain 14^5 objects, half a million, because each of its five indices has the count n. This
+    /// trial is too expensive and is not made, so the budget `left` stays at [`BYTES`].
     #[test]
     fn a_count_is_not_tried_where_it_would_make_very_many_objects() {
         let heads = [

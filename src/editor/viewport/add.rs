@@ -21,9 +21,10 @@ use crate::{
     tracer::vertices,
 };
 
-/// Maximum number of rows of positions that are searched for a free position. The rows are one
-/// behind the other, as the camera sees them, with seven positions each. If all are taken, a taken
-/// one is used. More rows are not needed, since nobody adds so many objects by hand.
+/// Maximum number of rows in which a free position for a new object is searched. Seen from the
+/// camera, each row is behind the one before it. A row has seven positions. If no position is free,
+/// a position that is already occupied is used. This is unlikely, since hardly anybody adds 700
+/// objects by hand.
 const ROWS: i32 = 100;
 
 /// Names of the colours of new objects, in the order in which they are tried. They differ clearly
@@ -41,10 +42,10 @@ const COLORS: [&str; 10] = [
     "sienna",
 ];
 
-/// Maximum distance of two colours that count as similar: the Euclidean distance of their sRGB
-/// channels, which range from 0 to 255. A new object gets a colour that is not similar to any
-/// other, if there is one. Chosen by eye: a smaller distance would allow colours that are easily
-/// confused; a larger one would exclude too many.
+/// Maximum distance of two similar colours: the Euclidean distance of their sRGB channels, which
+/// range from 0 to 255. If possible, a new object gets a colour that is not similar to any other.
+/// Chosen by eye: with a smaller distance, colours could be confused; a larger distance would
+/// exclude too many.
 const ALIKE: f64 = 48.0;
 
 /// A block that is added to the text.
@@ -215,8 +216,8 @@ fn free_height(scene: &Scene) -> f64 {
     bottoms.fold(below_eye, f64::min)
 }
 
-/// Returns the centre of a free position in front of the camera, and half of a cube's side length.
-/// A new object at this position should fill the cube.
+/// Returns a free position in front of the camera for a new object: a cube that the object should
+/// fill, as its centre and half of its side length.
 fn free_place(scene: &Scene) -> (DVec3, f64) {
     let projection = Projection::new(&scene.camera, &scene.image);
     let distance = distance(scene);
@@ -224,8 +225,8 @@ fn free_place(scene: &Scene) -> (DVec3, f64) {
     let boards = scene.objects.iter();
     let boards = boards.filter_map(|object| Some(object.shape.checkerboard()?.y));
     let floors = boards.filter(|y| *y < projection.eye.y);
-    // If the scene has no board yet, but the view axis is near the height 0, objects stand on that
-    // height, because a board would be added there.
+    // Without a board, objects stand at the height 0 if the view axis passes near it, because a
+    // board that is added later usually has the height 0.
     let floor = floors.reduce(f64::max).or_else(|| {
         let bottom = projection.eye.y + projection.ahead.y * distance - size;
         (projection.eye.y > 0.0 && bottom.abs() <= size).then_some(0.0)
@@ -242,7 +243,7 @@ fn free_place(scene: &Scene) -> (DVec3, f64) {
         let [aside, behind] = [aside, f64::from(row)].map(|steps| 2.5 * size * steps);
         let at = projection.eye + projection.right * aside + projection.ahead * (distance + behind);
         let at = DVec3::from(at.to_array().map(|x| rounded(x, size / 10.0)));
-        // The height of an object on a floor is exact; the other coordinates are rounded.
+        // An object on a floor must touch it, so its height is not rounded.
         floor.map_or(at, |y| at.with_y(y + size))
     };
     let is_seen = |at: &DVec3| is_seen(*at, size, &projection);

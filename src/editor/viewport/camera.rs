@@ -72,8 +72,8 @@ pub fn moved(
     let mut moved = *camera;
     match handle {
         "orbit" | "look" => {
-            // The picture follows the pointer in both cases. Hence, a camera that looks around
-            // turns against the pointer's movement, and a camera that orbits turns with it.
+            // The picture should follow the pointer. Hence, a camera that looks around turns
+            // against the pointer's movement, and a camera that orbits turns with it.
             let is_orbit = handle == "orbit";
             let ahead = turned(camera, projection, if is_orbit { -by } else { by });
             if is_orbit {
@@ -97,8 +97,8 @@ pub fn moved(
             if from == DVec2::ZERO || to == DVec2::ZERO {
                 return Err("the middle of the picture has no direction to roll to".to_owned());
             }
-            // The angle is clockwise in the picture, because y points down. The camera turns the
-            // other way.
+            // The angle is clockwise in the picture, because y points down. The camera must turn
+            // the other way, so the sign is changed.
             let turn = trig::atan2(from.perp_dot(to), from.dot(to));
             moved.roll = within_half_turn(camera.roll, -turn.in_degrees());
         }
@@ -128,10 +128,10 @@ fn zoom(heights: f64) -> f64 {
     libm::pow(ZOOM, heights)
 }
 
-/// Returns the view direction of a camera that looks around while the pointer moves by `by`. The
-/// movement is measured in heights of the picture, one of which corresponds to half a turn. A
-/// movement to the right turns the direction about the up vector to the left, and a movement down
-/// turns it towards the up vector. So the picture follows the pointer.
+/// Returns the view direction of a camera that looks around while the pointer moves by `by`, in
+/// heights of the picture. A movement by one height turns the direction by half a turn. If the
+/// pointer moves to the right, the camera turns to the left, so that the picture follows the
+/// pointer.
 fn turned(camera: &Camera, projection: &Projection, by: DVec2) -> DVec3 {
     let (up, ahead) = (unit(camera.up).0, projection.ahead);
     // `level_top` is the direction of the picture's top without roll.

@@ -44,9 +44,9 @@ pub struct Drag<'a> {
     pub to: DVec2,
     /// Axis or plane along which the handle moves; `None` if it follows the pointer freely.
     pub along: Option<Along>,
-    /// Maximum distance in the picture, in pixels, between neighbouring positions of the handle if
-    /// the drag snaps to a grid; `None` if it does not snap. On the grid, the changed numbers are
-    /// multiples of a power of ten, the greatest one that keeps the positions this close.
+    /// Maximum distance in the picture, in pixels, between neighbouring positions of the handle on
+    /// a grid; `None` if the drag does not snap to a grid. The changed numbers are multiples of the
+    /// grid's spacing, which is the greatest power of ten that satisfies this maximum.
     pub step: Option<f64>,
 }
 
@@ -97,7 +97,7 @@ fn other_blocks(scene: &Scene, object: Option<usize>) -> impl Iterator<Item = Sp
 ///
 /// # Errors
 ///
-/// Returns a sentence that says why the handle cannot be dragged there.
+/// Returns a sentence that says why the handle cannot be moved in this way.
 pub fn drag(
     sources: &Sources,
     alone: &Sources,
@@ -167,9 +167,9 @@ pub fn drag(
         .and_then(|step| view.snapped(current, &changes, step));
     let tolerance = snapped.map_or(TOLERANCE, |(_, step)| step);
     let first = snapped.map_or(first, |(decimals, _)| decimals);
-    // If the drag snaps to a grid, the tolerance is a whole step of the grid. A small change of
-    // another field of the object, whose value uses the same number, would then go unnoticed. So
-    // all fields that should not change must keep their exact values.
+    // Returns whether all fields keep their exact values, except the fields that the drag changes.
+    // This is required only for a drag on a grid, whose tolerance is a whole step of the grid. Such
+    // a tolerance would hide a small change of another field whose value uses the same number.
     let keeps_others = |found: FieldOwner| {
         let mut fields = block.fields.iter().map(|field| field.name.text);
         let is_meant = |field: &str| changes.iter().any(|change| change.name == field);
@@ -223,9 +223,8 @@ pub fn drag(
                 });
             }
             Ok(_) => refusal = refused(),
-            // If the text has errors although its rounded numbers already look like the ideal ones,
-            // the search ends. More digits might remove the errors, but would not bring the picture
-            // visibly nearer to the ideal one.
+            // If the rounded numbers are already within the tolerance, but the text has errors, the
+            // search ends: more digits would not change the picture visibly.
             Err(why) => match rounded(current, changes, &rounding) {
                 Some(rounded) if view.agree(ideal, rounded, tolerance) => return Err(why),
                 _ => refusal = why,
@@ -387,10 +386,10 @@ struct DragView<'a> {
 }
 
 impl DragView<'_> {
-    /// Returns the number of decimals of the grid that the drag snaps to, together with `step`, in
-    /// pixels. The spacing of the grid is the greatest power of ten that moves the dragged handle
-    /// by at most `step`. Returns `None` for the camera, and if even a grid with 12 decimals is too
-    /// coarse.
+    /// Returns the number of decimals of the grid that the drag snaps to, and `step`, which is in
+    /// pixels. One unit in the last decimal moves the handle by at most `step`; the smallest number
+    /// of decimals with this property is used. Returns `None` for the camera, or if 12 decimals do
+    /// not suffice.
     fn snapped(&self, owner: FieldOwner, changes: &[FieldChange], step: f64) -> Option<(i32, f64)> {
         let held = |owner: FieldOwner| {
             let mut marks = self.marks(owner).into_iter();
@@ -409,9 +408,9 @@ impl DragView<'_> {
         Some(((-9..=12).find(is_small)?, step))
     }
 
-    /// Returns whether two states of the dragged object or camera look alike. For every handle in
-    /// or near the picture, and for the dragged one, the places in the states `found` and `ideal`
-    /// must differ by at most `tolerance` pixels.
+    /// Returns whether two states of the dragged object or camera look alike. This is so if the
+    /// position of each handle in or near the picture, and of the dragged handle, differs by at
+    /// most `tolerance` pixels between the states `found` and `ideal`.
     fn agree(&self, ideal: FieldOwner, found: FieldOwner, tolerance: f64) -> bool {
         // A length that was rounded to few digits may have become 0, which the language forbids.
         if ideal.is_possible() && !found.is_possible() {
@@ -438,8 +437,8 @@ impl DragView<'_> {
                 let projection = Projection::new(&camera, self.image);
                 points.map(|at| (true, projection.point(*at))).collect()
             }
-            // The handle of a checkerboard is always where the view axis hits the board, so it says
-            // little about the board's height. Fixed points of the board are compared instead.
+            // The handle of a checkerboard always appears in the middle of the picture, so it does
+            // not show the board's height. Fixed points of the board are compared instead.
             FieldOwner::Shape(Shape::Checkerboard(board)) => {
                 let seen = |at: &DVec3| self.projection.point(at.with_y(board.y));
                 points.map(|at| (true, seen(at))).collect()

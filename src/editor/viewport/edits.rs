@@ -38,8 +38,8 @@ impl FieldChange {
         }
     }
 
-    /// For each number of the field that changes, such as a coordinate of a point, returns a copy
-    /// of `owner` in which only this number is changed, namely by 10^−`decimals`.
+    /// Returns copies of `owner`, one for each number of the field that changes, such as a
+    /// coordinate of a point. In each copy, only this number is changed, by 10^−`decimals`.
     pub fn with_unit(&self, owner: FieldOwner, decimals: i32) -> Vec<FieldOwner> {
         let unit = libm::pow(10.0, f64::from(-decimals));
         let units = match self.by {
@@ -78,15 +78,14 @@ pub fn changes(block: &Block<'_>, current: FieldOwner, ideal: FieldOwner) -> Vec
         .collect()
 }
 
-/// Ratios of one field's change to the largest change on the same axis. If each change on an axis
-/// has one of these ratios, the changes are rounded together, so that the ratios remain exact. The
-/// ratio is 1 for two vertices of a triangle, which move alike, and ±1/2 for the `center` of a box
-/// whose `size` changes.
+/// Ratios of two fields' changes, along the same axis, that are kept exactly when the changes are
+/// rounded. Two vertices of a triangle move by the same amount (1). If the `size` of a box changes,
+/// its `center` moves by half as much in either direction (±1/2).
 const RATIOS: [f64; 3] = [1.0, 0.5, -0.5];
 
-/// Maximum difference between a field's change and one of [`RATIOS`] times the largest change,
-/// relative to the largest change, for which the two count as equal. It only has to exceed rounding
-/// errors, which are about 1e-16, and to be far below the ratios; any value in between works.
+/// Tolerance for the equality of two changes, relative to the largest change on the axis. It must
+/// exceed rounding errors, which are about 1e-16, and be far below the smallest of [`RATIOS`], 1/2.
+/// Any value in between works.
 const SAME: f64 = 1e-6;
 
 /// The way in which the numbers that a drag changes are rounded.
@@ -96,15 +95,15 @@ pub struct DecimalRounding {
     /// and so on.
     decimals: i32,
     /// Absolute values of the changes that [`together`] has rounded already. A number that changes
-    /// by one of these amounts keeps all its old decimals and is not rounded to `decimals`. So the
-    /// points of the object that are not dragged stay exactly in place.
+    /// by one of these amounts is not rounded to `decimals` again. Otherwise points of the object
+    /// that are not dragged would move slightly.
     exact: Vec<f64>,
 }
 
-/// Rounds changes to `decimals` decimals. If each change on an axis is the largest change on this
-/// axis times one of [`RATIOS`], the largest change is rounded, and the others become the same
-/// multiples of it as before. So the points of the object that are not dragged stay exactly in
-/// place.
+/// Rounds the changes of several fields to `decimals` decimals. On each axis where every change is
+/// the largest change times one of [`RATIOS`], the largest change is rounded, and the other changes
+/// are computed from it by the same ratios. So the points of the object that are not dragged stay
+/// exactly in place.
 pub fn together(changes: &[FieldChange], decimals: i32) -> (Vec<FieldChange>, DecimalRounding) {
     let mut changes = changes.to_vec();
     let mut exact = Vec::new();
@@ -159,8 +158,8 @@ impl DecimalRounding {
     fn number(&self, from: f64, by: f64) -> f64 {
         let decimals = self.decimals;
         if self.exact.contains(&by.abs()) {
-            // An amount that is half of a rounded amount, as [`RATIOS`] allows, may have one
-            // decimal more than `decimals`.
+            // The amount was already rounded to `decimals` or, for the ratio 1/2 in [`RATIOS`], to
+            // one decimal more. So the sum keeps all these decimals, and all decimals of `from`.
             let [own, more] = [decimals_of(from), decimals.saturating_add(1)];
             return round(from + by, own.max(more));
         }
@@ -304,8 +303,8 @@ impl<'s> NumberWriter<'_, 's> {
         Some(())
     }
 
-    /// Formats the sum of `from` and `by`, rounded as this writer rounds. If the amount is rounded
-    /// to 0, formats the old number. An angle is written in `unit`.
+    /// Formats the sum of `from` and `by`, rounded by `self.rounding`. If the amount `by` is
+    /// rounded to 0, formats `from`. An angle is written in `unit`.
     fn sum(&self, from: Value, by: Value, unit: Unit) -> String {
         written(self.rounding.sum(from, by, unit), unit)
     }
@@ -322,8 +321,7 @@ fn literal_unit(tree: &tree::Value<'_>) -> Option<Unit> {
     }
 }
 
-/// Returns whether a value is a literal or a list. Each of its numbers can be replaced by any
-/// other, so it can express any change.
+/// Returns whether a value is a literal or a list, so that a change can be written into it.
 fn is_literal(tree: &tree::Value<'_>) -> bool {
     literal_unit(tree).is_some() || matches!(tree.kind, ValueKind::Tuple(_))
 }

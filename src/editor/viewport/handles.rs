@@ -32,8 +32,8 @@ pub const TOO_FAR: &str = "that is too far away";
 /// name of that axis follows, as in `min_x`.
 pub type Handle = (&'static str, Option<DVec3>);
 
-/// Axis or plane along which a dragged point moves in space. Without one, the point moves in the
-/// plane through it that is parallel to the view plane.
+/// Axis or plane along which a dragged point moves in space. If neither is given, the point moves
+/// parallel to the view plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Along {
@@ -62,8 +62,8 @@ const CENTER: &str = BOX.center.name;
 /// Names of the coordinate axes.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Names of the handles in the middle of a box's six faces. The two faces perpendicular to an axis
-/// stand together, the one with the smaller coordinate first.
+/// Names of the handles in the middle of a box's six faces. For each axis, the face with the
+/// smaller coordinate comes first.
 const FACES: [&str; 6] = ["min_x", "max_x", "min_y", "max_y", "min_z", "max_z"];
 
 /// Number of sides of the polygon that is drawn as a sphere's silhouette. Chosen by judgment: fewer
@@ -262,8 +262,9 @@ pub fn moved(
     let (field, axis) = handle.split_once('_').unwrap_or((handle, handle));
     let along = Along::named(axis).or(along);
     let by = moved_point(at, to, along, projection)? - at;
-    // To move the centre, the corners or vertices are moved: the `center` of a box is a rounded
-    // value, and a triangle given by vertices has no field for its centroid.
+    // The handle `center` of a box or triangle moves the corners or vertices instead of a field
+    // `center`. The `center` of a box is a rounded value, and a triangle given by vertices has no
+    // such field.
     let fields = match shape {
         Shape::Box(_) if field == CENTER => &[BOX.min.name, BOX.max.name][..],
         Shape::Triangle(_) if field == CENTER => &CORNERS,
@@ -348,16 +349,17 @@ fn radius(sphere: &Sphere, to: DVec2, projection: &Projection) -> Result<f64, St
     }
 }
 
-/// Returns the normal of a triangle such that the normal's drawn tip appears at the point `to` of
-/// the picture. If two normals do so, returns the one on the current side: towards the eye, or away
-/// from it. If none does, returns the normal whose tip appears nearest to `to`.
+/// Returns the normal of a triangle whose tip, as drawn in the picture, appears at the point `to`.
+/// If the tips of two normals do, returns the normal on the same side of the view ray as the
+/// current one: towards the eye, or away from it. If none does, returns the normal whose tip
+/// appears nearest.
 fn turned_normal(triangle: &CenteredTriangle, to: DVec2, projection: &Projection) -> DVec3 {
     let reach = triangle.sides.z;
     let (ray, _) = unit(projection.ray(to));
     let center = triangle.centroid - projection.eye;
-    // `foot` is the point nearest to the centroid on the ray through `to`, relative to the
-    // centroid. The tip is drawn at the distance `reach` from the centroid. So it is where the ray
-    // meets the sphere with the radius `reach` around the centroid.
+    // The normal's tip is drawn at the distance `reach` from the centroid. So the new tip is where
+    // the ray through `to` meets the sphere with the radius `reach` around the centroid. `foot` is
+    // the vector from the centroid to the nearest point of the ray.
     let foot = ray * center.dot(ray) - center;
     let (normal, length) = unit(triangle.normal);
     let rest = (reach - foot.length()) * (reach + foot.length());

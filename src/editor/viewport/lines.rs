@@ -4,10 +4,10 @@ use glam::{DVec2, DVec3};
 
 use crate::projection::Projection;
 
-/// Minimum depth of the visible part of a line, relative to the greatest coordinate of the line's
-/// points as seen from the eye. A part with less depth is cut off, since a point of depth 0 would
-/// appear infinitely far away. Any small positive number would do; with a much larger one, the cut
-/// would become visible.
+/// Minimum depth of the visible part of a line, as a fraction of the greatest distance, along any
+/// axis, between the eye and the line's points. A part with less depth is cut off, since a point of
+/// depth 0 would appear infinitely far away. Any small positive number would do; with a much larger
+/// one, the cut would become visible.
 const NEAREST: f64 = 1e-6;
 
 /// Distance from the picture at which lines are cut off, as a multiple of the picture's width or
@@ -55,8 +55,8 @@ impl Projection {
         lines
     }
 
-    /// Clips a segment in the picture to the picture, enlarged on each side by `grown` times its
-    /// width or height. Returns `None` if no part of the segment is left.
+    /// Clips a segment in the picture to a rectangle: the picture, enlarged on each side by `grown`
+    /// times its width or height. Returns `None` if no part of the segment is left.
     pub(super) fn clip(&self, segment: [DVec2; 2], grown: f64) -> Option<[DVec2; 2]> {
         clip(segment, [-grown * self.size, (1.0 + grown) * self.size])
     }
@@ -68,6 +68,8 @@ impl Projection {
         // The ray through the pixel (x, y) of a picture of w × h pixels has, at depth 1, the height
         //
         //   ahead.y + pitch · (right.y · (x − w/2) − top.y · (y − h/2)).
+        //
+        // On the returned line, this height is `height`.
         let normal = DVec2::new(self.right.y, -self.top.y) * self.pitch;
         let middle = self.size / 2.0;
         // `foot` is the line's point nearest to the middle of the picture, and `along` is the

@@ -38,7 +38,8 @@ pub use pick::{MOST_SAMPLES, PixelSamples, pick, samples};
 pub fn selections(analysis: &Analysis<'_>, scene: &Scene) -> Vec<Span> {
     let mut blocks = analysis.blocks().peekable();
     let selection = |object: &Object| {
-        // The objects of a repeated block share its span.
+        // A repeated block describes several objects with the same span, so the iterator stays at
+        // the block until an object starts after it.
         while blocks
             .next_if(|block| block.span.start < object.span.start)
             .is_some()

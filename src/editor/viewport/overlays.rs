@@ -81,7 +81,7 @@ pub struct ObjectOverlay {
 /// Choice of the objects whose outlines are drawn.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ShownObjects {
-    /// The objects with these indices.
+    /// The objects with the listed indices.
     Only(Vec<usize>),
     /// The first [`MOST_OBJECTS`] objects and, if an index is given, also the object with this
     /// index.
@@ -89,7 +89,7 @@ pub enum ShownObjects {
 }
 
 impl ShownObjects {
-    /// Returns whether the outline of the object with this index is drawn.
+    /// Returns whether the outline of the object with the index `index` is drawn.
     pub fn has(&self, index: usize) -> bool {
         match self {
             Self::Only(indices) => indices.contains(&index),
@@ -118,7 +118,8 @@ pub fn overlays(scene: &Scene, which: &ShownObjects) -> Overlays {
     });
     let cut = |depth: f64| {
         let boards = objects().filter_map(|(_, object)| object.shape.checkerboard());
-        // At depth 0, the plane through the eye, nothing is visible.
+        // At depth 0, in the plane through the eye, nothing is visible. The slope is then infinite,
+        // and no line is returned.
         let lines = boards
             .filter_map(|&Checkerboard { y, .. }| projection.level((y - camera.eye.y) / depth));
         lines.take(MOST_OBJECTS).collect()

@@ -1,4 +1,5 @@
-//! Compares the share of a triangle in a pixel, and its bound, with a polygon in hundreds of bits.
+//! Compares the computed share of a triangle in a pixel, and its error bound, with the area of a
+//! polygon that is computed with hundreds of bits of precision.
 
 use std::cell::RefCell;
 
@@ -25,12 +26,14 @@ fn cross(a: &V, b: &V) -> V {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &a[i] * &b[j] - &a[j] * &b[i])
 }
 
-/// Returns the share of a pixel in which a triangle is seen that is in front of the eye.
+/// Returns the fraction of a pixel's area that shows a triangle. The triangle is in front of the
+/// eye.
 fn share(oracle: &Oracle, [x, y]: [u32; 2], eye: DVec3, vertices: [DVec3; 3]) -> N {
     let number = oracle.number;
     let difference = |a: &V, b: &V| [0, 1, 2].map(|i| &a[i] - &b[i]);
     let dot = |a: &V, b: &V| &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2];
-    // A ray is a linear form of the point of the pixel.
+    // The ray's direction is linear in the position within the pixel, so three rays determine all
+    // others.
     let ray =
         |x_offset: f64, y_offset: f64| oracle.direction(x, y, glam::dvec2(x_offset, y_offset));
     let middle = ray(0.0, 0.0);
@@ -76,7 +79,8 @@ fn errors_of_a_triangles_share_are_within_tight_bounds() {
             [scene.image.width, scene.image.height] = [12, 12];
             let oracle = Oracle::new(&scene, USUAL_SIZES);
             let world = World::new(&scene);
-            // Values of the triangle's colour are 1, of the background 0.
+            // The triangle's colour has the value 1 and the background 0, so that the mean is the
+            // triangle's share of the pixel.
             let integrator = Integrator::for_values(&world, |color| {
                 [f64::from(u8::from(color != Color::BLACK))]
             });

@@ -1,4 +1,4 @@
-//! Compares the branches of conics with closed forms in hundreds of bits.
+//! Compares the branches of conics with closed forms that are computed with 600 bits of precision.
 
 use std::cell::RefCell;
 
@@ -12,14 +12,16 @@ use crate::reference::{
 
 const NUMBER: Number = Number { bits: 600 };
 
-/// Maximum rounding error of the integral of a section, divided by its width (`slabs`).
+/// Maximum rounding error of the integral of a section, divided by the section's width. The value
+/// is that of the constant with the same name in `slabs`.
 const ROUNDING: f64 = 16.0 * f64::UNIT;
 
-/// A branch of a conic in hundreds of bits.
+/// A branch of a conic, computed with 600 bits of precision.
 struct ExactBranch {
-    /// The factors B, C, D, E, A and F of the conic ([`ConicGraph`]).
+    /// The coefficients A, B, C, D, E and F of the conic ([`ConicGraph`]).
     factors: [N; 6],
-    /// Coefficients of x², 2x and 1 in Δ.
+    /// Coefficients of x², 2x and 1 in Δ, the polynomial under the root in y = (−b ± √Δ)/C
+    /// ([`ConicGraph`]).
     delta: [N; 3],
     side: f64,
 }
@@ -38,7 +40,8 @@ impl ExactBranch {
         }
     }
 
-    /// Returns √Δ at `x`, or 0 if Δ is negative.
+    /// Returns √Δ, the root in y = (−b ± √Δ)/C ([`ConicGraph`]), at `x`. Returns 0 if Δ is
+    /// negative.
     fn root(&self, x: &N) -> N {
         let [p, q, r] = &self.delta;
         let delta = (p * x + NUMBER.exact(2.0) * q) * x + r;
@@ -51,8 +54,9 @@ impl ExactBranch {
         (NUMBER.exact(self.side) * self.root(&x) - b * &x - e) / c
     }
 
-    /// Returns how far y may move at `x` if the conic's form has eight roundings in double-double.
-    /// This is much only where Δ is nearly 0. The error bound of the conic itself counts it.
+    /// Returns how far y(x) may move if the conic's equation has an error of eight roundings in
+    /// double-double. The distance is large only if Δ ([`ConicGraph`]) is nearly 0 at `x`. The
+    /// error bound of a section does not include it, because the error bound of the conic does.
     fn doubt(&self, x: f64) -> f64 {
         let c = self.factors[2].to_f64().value().abs();
         let root = self.root(&NUMBER.exact(x)).to_f64().value();
@@ -68,7 +72,8 @@ impl ExactBranch {
         (NUMBER.exact(self.side) * self.root_integral(&x) - line) / c
     }
 
-    /// Returns the integral of √Δ from 0 to `x`, plus a constant.
+    /// Returns the integral of √Δ, the root in y = (−b ± √Δ)/C ([`ConicGraph`]), from 0 to `x`,
+    /// plus a constant.
     fn root_integral(&self, x: &N) -> N {
         let [p, q, r] = &self.delta;
         let (root, slope, twice) = (self.root(x), p * x + q, NUMBER.exact(2.0) * p);
@@ -130,7 +135,8 @@ struct Found {
 }
 
 impl Found {
-    /// Compares the sections of a branch from `left` to `right`, which are halved as slabs are.
+    /// Compares the sections of a branch from `left` to `right` with the exact branch. If the
+    /// branch turns too much to be one section, its two halves are compared.
     fn compare(&mut self, graph: &ConicGraph, exact: &ExactBranch, [left, right]: [f64; 2]) {
         let width = right - left;
         let Some(span) = graph.span(left, right) else {
@@ -220,7 +226,8 @@ fn errors_of_sections_are_within_tight_bounds() {
     assert!(found.cut > 0);
 }
 
-/// Two conics nearly coincide. The distance of their arcs is compared with that at a few places.
+/// The two conics of a case nearly coincide. The bound on the distance between their arcs is
+/// compared with the exact distance at nine places.
 #[test]
 fn distances_of_parallel_arcs_are_tight() {
     let found = RefCell::new(Tightness::default());

@@ -1,12 +1,13 @@
 //! Batches of eight pixels that show only a checkerboard and are crossed by few of its lines. Most
 //! pixels of more than one colour are of this kind.
 //!
-//! In: such pixels one by one, in any order. Each comes with the numbers of the squares that lie at
-//! its corners. Out: the integral of the board's sign over each pixel. A board has two families of
-//! lines, those between columns and those between rows of squares. All pixels of a batch are
-//! crossed by the same numbers of lines of the two families. When a batch has eight pixels,
-//! `strips_simd` computes them at once and bounds the errors. The result for a pixel depends
-//! neither on the other pixels of its batch nor on the part of the picture that is rendered.
+//! In: such pixels one by one, in any order. Each comes with the column and row numbers of the
+//! squares that its corners show. Out: the integral of the board's sign (1 on squares of one
+//! colour, −1 on the others) over each pixel. A board has two families of lines, those between
+//! columns and those between rows of squares. All pixels of a batch are crossed by the same numbers
+//! of lines of the two families. When a batch has eight pixels, `strips_simd` computes them at once
+//! and bounds the errors. The result for a pixel depends neither on the other pixels of its batch
+//! nor on the part of the picture that is rendered.
 
 use super::{
     homography::BoundedSum,
@@ -58,9 +59,8 @@ impl BoardBatches {
     }
 
     /// Adds a pixel to the queue of its batch. If the batch is then full, computes it and calls
-    /// `emit` with each of its pixels and the pixel's integral, which is positive if the first
-    /// colour prevails. If too many lines cross the pixel, calls `emit` at once, without an
-    /// integral.
+    /// `emit` for each of its pixels, with the area of the board's first colour minus that of the
+    /// second. If too many lines cross the pixel, calls `emit` at once, without a result.
     pub fn push(
         &mut self,
         pixel: BoardPixel,
@@ -85,7 +85,8 @@ impl BoardBatches {
         }
     }
 
-    /// Computes all pixels that are still queued, and calls `emit` with each and its integral.
+    /// Computes all pixels that are still queued. Calls `emit` for each, with the area of the
+    /// board's first colour minus that of the second.
     pub fn finish(mut self, emit: &mut impl FnMut(BoardPixel, Option<BoundedSum>)) {
         for (i, batch) in self.batches.iter_mut().enumerate() {
             let crossing = [i / (MAX_LINES + 1), i % (MAX_LINES + 1)];
@@ -95,9 +96,9 @@ impl BoardBatches {
 }
 
 impl Batch {
-    /// Computes the queued pixels, calls `emit` with each and its integral, and empties the queue.
-    /// `crossing` holds how many lines between columns of the board cross each pixel, and how many
-    /// lines between rows do, the smaller number first.
+    /// Computes and empties the queue. Calls `emit` for each pixel, with the area of the board's
+    /// first colour minus that of the second. `crossing` holds how many lines between columns of
+    /// the board cross each pixel, and how many lines between rows do, the smaller number first.
     fn compute(
         &mut self,
         crossing: [usize; 2],
@@ -139,8 +140,9 @@ mod tests {
         World::new(&scene)
     }
 
-    /// Returns the integrals of all pixels that show only the board, except pixels in which the
-    /// squares at the corners could not be determined.
+    /// Returns the pixels that show only the board, each with the area of the first colour minus
+    /// that of the second. Omits pixels in which the squares at the corners could not be
+    /// determined.
     fn sums(world: &World) -> Vec<(BoardPixel, Option<BoundedSum>)> {
         let [width, height] = SIZE;
         let mut batches = BoardBatches::new();
@@ -174,7 +176,8 @@ mod tests {
         let world = world(camera, 0.7);
         let known = sums(&world).into_iter().filter_map(|(_, sum)| sum);
         let sharp = known.filter(|sum| sum.bound < 1e-9).count();
-        // The picture has 24 × 18 = 432 pixels, of which more than half are below the horizon.
+        // More than half of the picture's 24 × 18 = 432 pixels are below the horizon and may show
+        // the board, so at least 100 sharp results are expected.
         assert!(sharp > 100, "{sharp}");
     }
 

@@ -17,9 +17,9 @@ use std::f64::consts::PI;
 use multiversion::multiversion;
 
 /// Maximum number of terms of the series ([`EdgeSeries`]) by which a checkerboard is integrated
-/// along an edge. The omitted terms count as an error. The series is used only at distances of 18
-/// squares (`NEAR_SQUARES`) and more; nearer squares are integrated one by one. With 20 terms, the
-/// bound of the error therefore contains the factor 22!/2·(18π)⁻²⁰, about 5e-15.
+/// along an edge. The error bound includes the omitted terms. The series is used only at distances
+/// of 18 squares (`NEAR_SQUARES`) and more; nearer squares are integrated one by one. With 20
+/// terms, the bound therefore contains the factor 22!/2·(18π)⁻²⁰, about 5e-15.
 pub(super) const MAX_TERMS: usize = 20;
 /// Upper limit on the number of blocks into which the sum over an edge's crossings is divided. The
 /// truncation error of each block is limited to the tolerance divided by this number, so that all
@@ -146,12 +146,12 @@ impl LineCrossings {
             let (terms, left) = series.terms_for(depth, count, limit);
             let block = block(self, series, terms, [done, count]);
             sum.value += if done % 2.0 == 0.0 { block } else { -block };
-            // The error of the coordinate t consists of two roundings, and of three roundings of
-            // the distance from the start of the chunk, which is half a chunk on average. The slope
-            // of the series X is at most π times the bound of X, so that an error of t causes π
-            // times as large an error of X. The factor 4 of `reach` covers these errors with a
-            // margin. A term of X has 14 roundings of its own, derived in `green`. The running sum
-            // of a lane has one rounding for each number added.
+            // The error of the coordinate t is at most two unit roundoffs, plus three unit
+            // roundoffs times the distance from the start of the chunk. This distance is half a
+            // chunk on average. The slope of the series X is at most π times the bound of X, so
+            // that an error of t causes π times as large an error of X. The factor 4 of `reach`
+            // covers these errors with a margin. A term of X has 14 roundings of its own, derived
+            // in `green`. The running sum of a lane has one rounding for each number added.
             let reach = 2.0 + 0.5 * count.min(CHUNK as f64);
             let added = count / LANES as f64 + 4.0;
             let rounding = UNIT * series.size(1, depth) * (added + 16.0 + 4.0 * PI * reach);

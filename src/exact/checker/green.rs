@@ -62,9 +62,9 @@ const TRUNCATION: f64 = 1e-3;
 /// the horizon. Edges that end on the horizon get the larger fraction [`ENDLESS_TAIL`], because
 /// they cross infinitely many lines.
 ///
-/// A polygon has at most two edges of each kind with noticeable errors, which add up to 2·(1/9 +
-/// 8/9), twice the tolerance. Half of this counts, because a colour's share is half of the integral
-/// of signs.
+/// A polygon has noticeable errors on at most two edges that end before the horizon and two that
+/// end on it. Together they are at most 2·(1/9 + 8/9), twice the tolerance. A colour's share is
+/// half of the integral of signs, so its error is at most the tolerance.
 const FINITE_TAIL: f64 = 1.0 / 9.0;
 /// Maximum truncation error of the sum over the lines that one edge crosses, as a fraction of the
 /// pixel's tolerance. It holds for an edge that ends on the horizon. Other edges of the polygon get
@@ -76,14 +76,14 @@ const ENDLESS_TAIL: f64 = 8.0 / 9.0;
 /// hardly contribute.
 const ONLY_FINITE_TAIL: f64 = 1.0;
 /// Minimum fraction of the pixel's tolerance that the truncated sums over one polygon may use up. A
-/// polygon gets its area in square pixels as the fraction, if this is more. With a smaller minimum,
-/// the sums over tiny polygons would become long. With a larger one, the errors of many tiny
-/// polygons could exceed the tolerance.
+/// polygon whose area in square pixels is larger than the minimum may use up this area as a
+/// fraction. With a smaller minimum, the sums over tiny polygons would become long. With a larger
+/// one, the errors of many tiny polygons could exceed the tolerance.
 const MIN_SHARE: f64 = 1.0 / 64.0;
 
-/// Factors (k + 1)!/2, by k: the k-th derivative of K/m³ with respect to m is ±K·(k +
-/// 2)!/2·m^(−3−k), which uses the factor of index k + 1. The series ([`EdgeSeries`]) and the
-/// potential ([`potential`]) consist of such derivatives.
+/// Table of (k + 1)!/2, with the index k. The k-th derivative of K/m³ with respect to m is ±K·(k +
+/// 2)!/2·m^(−3−k), which uses the entry k + 1. The series ([`EdgeSeries`]) and the potential
+/// ([`potential`]) consist of such derivatives.
 pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
     let mut all = [0.5; MAX_TERMS + 2];
     let mut k = 1;
@@ -142,9 +142,9 @@ pub(super) fn sum(
         if ends != 0.0 && corners[i].depth.is_finite() {
             let (psi, size) = potential(board, &corners[i], terms);
             sum.value += ends * psi;
-            // Term k of the potential Ψ has at most 3k + 4 roundings and is less than 2^−k of term
-            // 0. The roundings add up to Σ (3k + 4)/2^k = 14 roundings of term 0. The product with
-            // the density factor K has two more.
+            // Term k of the potential Ψ has at most 3k + 4 roundings and is less than 2^−k times
+            // term 0. The rounding error is therefore at most Σ (3k + 4)/2^k = 14 unit roundoffs,
+            // relative to term 0. The product with the density factor K has two more roundings.
             sum.bound += (16.0 * UNIT + 2.0 * board.density_error) * size;
         }
     }
@@ -203,10 +203,11 @@ fn terms(
     best
 }
 
-/// Returns two values at a corner of a polygon. The first is a potential; its differences between
-/// the ends of the edges are part of the polygon's integral. `terms` is the number of orders of
-/// derivatives in it. The second is the density of the floor in the picture, in square pixels per
-/// square of the board. The rounding error of the potential is proportional to it.
+/// Returns two values at a corner of a polygon: a potential and a density. The differences of the
+/// potential between the ends of the edges are part of the polygon's integral. The potential is a
+/// sum over derivatives of order 0 to `terms` − 1. The density is that of the floor in the picture,
+/// in square pixels per square of the board. The rounding error of the potential is proportional to
+/// the density.
 fn potential(board: &Homography, corner: &Corner, terms: usize) -> (f64, f64) {
     match terms {
         0..=2 => potential_of::<2, 4>(board, corner, terms),
@@ -252,12 +253,12 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
 struct Edge {
     /// Sign, +1 or −1, with which the edge's integral is added to the polygon's. It depends on two
     /// conditions: whether the polygon's boundary runs from the edge's near end to its far end, and
-    /// whether b is the coordinate of the floor that changes more along the edge. It is +1 if both
-    /// hold or neither does.
+    /// whether the floor's second coordinate changes at least as much along the edge as the first.
+    /// It is +1 if both hold or neither does.
     sign: f64,
-    /// Factor, in the polygon's integral, of the potential's difference ([`potential`]) between the
-    /// edge's ends. It is 1 if b is the coordinate of the floor that changes more along the edge,
-    /// and 0 if it is a.
+    /// Factor with which the polygon's integral contains the difference of the potential
+    /// ([`potential`]) between the edge's ends. It is 1 if the floor's second coordinate changes at
+    /// least as much along the edge as the first, and 0 otherwise.
     potential: f64,
     c: f64,
     t: f64,
@@ -269,8 +270,8 @@ struct Edge {
     /// coordinate that changes less along the edge is constant. Infinite if the edge ends on the
     /// horizon.
     count: Double,
-    /// Change from the near to the far end of the coordinate of the floor that changes more along
-    /// the edge. Infinite if the far end is on the horizon.
+    /// Change of t from the near to the far end, where t is the coordinate of the floor that
+    /// changes more along the edge. Infinite if the far end is on the horizon.
     length: f64,
     /// Slope dc/dt of the edge on the floor, where t is the coordinate that changes more along the
     /// edge, and c the other one.
@@ -281,13 +282,13 @@ struct Edge {
     /// Partial derivative ∂m/∂t of the depth m on the floor, where t is the coordinate that changes
     /// more along the edge.
     slope: f64,
-    /// Change of the coordinate of the floor that changes more along the edge, from one crossed
-    /// line to the next.
+    /// Change of t from one crossed line to the next, where t is the coordinate of the floor that
+    /// changes more along the edge.
     stride: Double,
     /// Change of the depth m from one crossed line to the next.
     rise: f64,
-    /// Sign, +1 or −1, of the change from the near to the far end of the coordinate of the floor
-    /// that changes less along the edge.
+    /// Sign, +1 or −1, of the change of c from the near to the far end, where c is the coordinate
+    /// of the floor that changes less along the edge.
     sense: f64,
 }
 
@@ -391,9 +392,10 @@ impl Edge {
             sum.value += 2.0 * start * jumps.value;
             sum.bound += 2.0 * jumps.bound;
         }
-        // The series X at each end of the edge has 14 roundings of its first term: term k has 3k +
-        // 4 roundings and is less than 2^−k of the first. The constant covers both ends. Every term
-        // is also proportional to the density factor K, which has an error of its own.
+        // Term k of the series X at an end of the edge has 3k + 4 roundings and is less than 2^−k
+        // times term 0. The roundings add up to at most 14 unit roundoffs, relative to term 0. The
+        // constant 32 covers both ends. Every term is also proportional to the density factor K,
+        // which has an error of its own.
         let (ends, all) = (32.0 * UNIT * ends, ends + sum.value.abs());
         sum.value *= self.rho;
         sum.bound = self.rho.abs() * (sum.bound + ends + 2.0 * board.density_error * all);

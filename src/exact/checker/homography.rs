@@ -17,9 +17,9 @@ use crate::math::{Double, Real, two_product};
 pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
 
 /// Minimum absolute value of the determinant of the matrix of the board's three linear forms
-/// ([`Homography`]), each scaled so that its largest factor is 1 to 2. A matrix with a smaller
-/// determinant counts as singular and gets this determinant, so that the inverse and its products
-/// are finite. The error bound then covers the whole polygon.
+/// ([`Homography`]), each scaled so that its largest factor is 1 to 2. A smaller determinant is
+/// replaced by this value, so that the inverse and its products are finite. The matrix is then
+/// treated as singular, and the error bound covers the whole polygon.
 const MIN_DETERMINANT: f64 = 1e-100;
 
 /// Maximum displacement of the horizon by rounding errors, in pixels, at which corners are moved.
@@ -77,11 +77,11 @@ pub(in crate::exact) struct Homography {
     /// Unit vector along the horizon.
     horizon: DVec2,
     /// Maximum displacement of a point perpendicular to the horizon by rounding errors, in pixels,
-    /// as two numbers. The first is the displacement of a point on the horizon. The second is the
-    /// increase when the form `below`, which is 0 on the horizon, increases by 1.
+    /// as the coefficients `[d, e]` of d + e·L. L is the value at the point of the form `below`,
+    /// which is 0 on the horizon.
     across_horizon: [f64; 2],
-    /// Maximum value of the form `below`, which is 0 on the horizon, at which a point counts as on
-    /// the horizon. A value up to this maximum may be only a rounding error.
+    /// Maximum value of the form `below`, which is 0 on the horizon, at which a point is treated as
+    /// lying on the horizon. A value up to this maximum may be only a rounding error.
     horizon_tolerance: f64,
 }
 
@@ -191,11 +191,12 @@ impl Homography {
             }
         };
         // The value of N_a, N_b or L has three roundings of its largest terms, and the quotient N/L
-        // has one more.
+        // has one more. Each form is therefore given an error of four roundings.
         let errors = [a, b, below].map(|form| 4.0 * UNIT * size(&form));
         let steepness = libm::hypot(below[0], below[1]);
         // Errors e of the forms displace a point by v = M⁻¹·e, where M is the matrix of the three
-        // forms. The displacement starts from the rounding errors of the point's own coordinates.
+        // forms. The initial value, four unit roundoffs, covers the rounding errors of the point's
+        // own coordinates.
         let volume = det.abs() * (1.0 - det_off(UNIT)).max(0.0);
         let (mut displacement, mut tilt) = (4.0 * UNIT, 0.0);
         for (error, column) in errors.iter().zip(&columns) {
@@ -235,9 +236,9 @@ impl Homography {
     }
 
     /// Returns the point of the floor that a point of the picture shows, and its depth. `at` must
-    /// be in the polygon of `visible`. It counts as on the horizon if it is an end of this
-    /// polygon's side on the horizon, if only rounding keeps it off the horizon, or if the floor's
-    /// coordinates overflow.
+    /// be in the polygon of `visible`. The point is treated as lying on the horizon in three cases:
+    /// it is an end of `visible.horizon`, its distance from the horizon may be only a rounding
+    /// error, or the floor's coordinates overflow.
     pub(super) fn corner(&self, at: DVec2, visible: &VisiblePart) -> Corner {
         let is_on_horizon = |horizon: [DVec2; 2]| horizon.contains(&at);
         let level = if visible.horizon.is_some_and(is_on_horizon) {
@@ -251,8 +252,8 @@ impl Homography {
         } else {
             1.0 / level
         };
-        // The floor's coordinates N/L, as N times the depth 1/L. If one overflows, the point counts
-        // as on the horizon.
+        // The floor's coordinates N/L, as N times the depth 1/L. If one overflows, the point is
+        // treated as lying on the horizon.
         let places = floor.map(|n| n * depth);
         if depth.is_infinite() || !places.iter().all(|place| place.is_finite()) {
             let depth = f64::INFINITY;
@@ -262,8 +263,8 @@ impl Homography {
         Corner { floor, depth }
     }
 
-    /// Returns whether [`Self::corner`] treats the point `at` as on the horizon although it lies
-    /// below. It does so if the distance to the horizon may be only a rounding error.
+    /// Returns whether [`Self::corner`] treats the point `at` as lying on the horizon although it
+    /// lies below the horizon. It does so if the distance may be only a rounding error.
     pub(super) fn is_set_on_horizon(&self, at: DVec2) -> bool {
         let level = form(&self.below, at);
         level > 0.0 && level <= self.horizon_tolerance
@@ -324,8 +325,8 @@ fn determinant(a: &[f64; 3], b: &[f64; 3], l: &[f64; 3]) -> f64 {
         .to_f64()
 }
 
-/// Returns for each component of the cross product `a` × `b` the two exact products whose
-/// difference it is: the first minus the second.
+/// Returns two exact products for each component of the cross product `a` × `b`. The component is
+/// the first product minus the second.
 fn minors(a: &[f64; 3], b: &[f64; 3]) -> [[Double; 2]; 3] {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| [two_product(a[i], b[j]), two_product(a[j], b[i])])
 }

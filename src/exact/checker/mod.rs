@@ -50,8 +50,8 @@ const MAX_CUT_SQUARES: f64 = 24.0;
 /// Maximum depth at which squares are cut out one by one. The depth is 1 over the form L
 /// ([`Homography`]), which is 0 on the horizon. At this depth, a point of the picture is only a
 /// thousand rounding errors away from the horizon, because the largest factor of L is about 1. If
-/// squares are so large that even farther ones count as near, the area beyond this depth is not
-/// integrated and counts as an error.
+/// squares are so large that even squares beyond this depth are near ([`NEAR_SQUARES`]), the area
+/// beyond it is not integrated, but added to the error bound.
 const MAX_DEPTH: f64 = 1e13;
 
 impl Homography {
@@ -66,8 +66,8 @@ impl Homography {
         if self.squares(&visible.polygon) <= MAX_CUT_SQUARES {
             return near::sum(self, &visible.polygon, budget).within(polygon);
         }
-        // Squares up to the depth m = `depth` count as near. At greater depths, m changes little
-        // from square to square.
+        // Squares up to the depth m = `depth` are near, i.e. cut out one by one. At greater depths,
+        // m changes little from square to square.
         let [p, q] = self.slope;
         let depth = NEAR_SQUARES * (p.abs() + q.abs());
         let nearness = |at: DVec2| depth.min(MAX_DEPTH) * form(&self.below, at) - 1.0;
@@ -85,9 +85,9 @@ impl Homography {
             });
         }
         if polygon.iter().any(|&at| self.is_set_on_horizon(at)) {
-            // `Self::corner` moves corners to the horizon that only rounding keeps off it. The move
-            // displaces squares at most as far as rounding does, so that the same bound is added a
-            // second time.
+            // `Self::corner` moves a corner to the horizon if only rounding errors keep it off the
+            // horizon. The move displaces squares at most as far as rounding does, so that the same
+            // bound is added a second time.
             sum.bound += self.displacement_error(&visible.polygon);
         }
         sum.within(polygon)

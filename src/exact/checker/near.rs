@@ -61,9 +61,9 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -
                 return BoundedSum::unknown(polygon);
             }
             let (area, perimeter) = measure(&squares.piece);
-            // The area is half a sum with a term for each corner. Each term has three roundings of
-            // products of two distances, and one of the sum. A distance is at most half the
-            // perimeter.
+            // The area is half a sum with a term for each corner. A term is the difference of two
+            // products of distances, each at most half the perimeter. It has three roundings, and
+            // adding it to the sum has one.
             let rounding = squares.piece.len() as f64 * UNIT * perimeter * perimeter;
             tally.add(
                 square_wave(row) * square_wave(square) * area.abs(),

@@ -199,8 +199,8 @@ const SMALL: f64 = 3.0;
 const LARGE: f64 = 64.0;
 
 /// Distance in y between neighbouring expansion points of the Taylor series of the exponential
-/// integral F_3 ([`integrals`]), which are used for |y| from `SMALL` to `LARGE`. A smaller distance
-/// would need fewer terms per series but a larger table, which now has 123 series.
+/// integral F_3 ([`integrals`]). The series are used for |y| from `SMALL` to `LARGE`. A smaller
+/// distance would need fewer terms per series but a larger table, which now has 123 series.
 const STEP: f64 = 0.5;
 /// Number of terms of a Taylor series of the exponential integral F_3 ([`integrals`]). The distance
 /// of y from the expansion point is at most ¼, and y is at least 3, so that the first omitted term
@@ -292,9 +292,11 @@ fn expansions() -> Vec<Expansion> {
     //
     // Errors satisfy this equation without the −1, so that they are proportional to y^(s−1),
     // whereas F_s grows about like 1/y. They therefore decay on the way down. The coefficients c_k
-    // about y satisfy a recurrence, from whose right side 1 is subtracted if k = 0:
+    // about y satisfy the recurrence
     //
-    // (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1.
+    // (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1 − δ_k,
+    //
+    // where δ_k is 1 if k = 0, and 0 otherwise.
     let middles = (SMALL / STEP) as u32..=(LARGE / STEP) as u32;
     let mut value = asymptotic(LARGE);
     let about = |middle: u32| {
@@ -406,8 +408,9 @@ mod tests {
                 let wave = cis(y * x / (1.0 - x));
                 sum = [sum[0] + (1.0 - x) * wave[0], sum[1] + (1.0 - x) * wave[1]];
             }
-            // Near x = 1, the integrand oscillates too fast for the midpoint rule. The part of the
-            // integral beyond this x is only of order (1 − x)².
+            // Near x = 1, the integrand oscillates too fast for the midpoint rule. The error stays
+            // below the tolerance of 1e-4, because the part of the integral from x to 1 is only of
+            // order (1 − x)².
             close(third(y), sum.map(|x| x / f64::from(STEPS)), 1e-4);
         }
     }

@@ -2,13 +2,14 @@
 //! vectorises.
 //!
 //! In: eight pixels that show only a checkerboard. The board has two families of lines, those
-//! between columns and those between rows of squares. The pixels agree in the number of lines of
-//! each family that cross them. Out: the integral over each pixel, with a bound on the rounding
+//! between columns and those between rows of squares. All eight pixels are crossed by the same
+//! number of lines of each family. Out: the integral over each pixel, with a bound on the rounding
 //! errors of areas and on the displacement of lines by rounding.
 //!
 //! The lines of the family with fewer lines cut the pixel into strips. The sign σ_i = (−1)^i
-//! alternates from strip to strip. Let H_k be the side of line k of the other family on which
-//! squares have greater numbers, and W_k the signed area of the strips there:
+//! alternates from strip to strip. The lines of the other family have the numbers k = 0, 1, … A
+//! line k divides the plane into two half-planes. Let H_k be the one in which the squares have
+//! greater numbers, and W_k the signed area of the strips in H_k:
 //!
 //! W_k = Σ_i σ_i·|strip i ∩ H_k|.
 //!
@@ -43,7 +44,7 @@ use crate::tracer::{CheckerForms, CheckerPixel, LocalForm};
 /// bytes each stays in the first-level cache.
 pub(super) const MAX_STRIP_LINES: usize = 6;
 
-/// Number of pixels that are computed at once. The widest vectors hold as many `f64`.
+/// Number of pixels that are computed at once. The widest vector registers hold eight `f64`.
 pub(super) const PIXELS: usize = 8;
 
 /// One number per pixel.
@@ -64,9 +65,9 @@ pub(super) struct BoardLanes {
     /// has the second. The first square is the one in the first of the pixel's columns of squares
     /// and in the first of its rows.
     sign: Lanes,
-    /// Number of the square at each of the four corners of each pixel. Of the board's two families
-    /// of lines (those between columns, and those between rows), one has fewer lines in the pixel.
-    /// The squares are counted in the direction that crosses this family, from 0.
+    /// Number of the square at each of the four corners of each pixel: the column number, or the
+    /// row number, relative to the pixel's first column or row. It is the column number if fewer
+    /// lines between columns than between rows cross the pixel, and otherwise the row number.
     squares: [Lanes; 4],
 }
 
@@ -118,7 +119,8 @@ impl LaneSums {
         let (value, bound) = (self.values[pixel], self.bounds[pixel]);
         BoundedSum {
             value,
-            // If squares are extremely large, products overflow, and the sum is NaN.
+            // If squares are extremely large, products overflow, and the sum is NaN. The bound is
+            // then infinite.
             bound: if value.is_nan() { f64::INFINITY } else { bound },
         }
     }
@@ -127,8 +129,8 @@ impl LaneSums {
 impl BoardLanes {
     /// Sets the board of the pixel with the index `place`, from 0 to 7. A board has two families of
     /// parallel lines, between columns (0) and between rows (1). `families` lists the two, the one
-    /// with fewer lines in the pixel first. `first` has the smallest number of a column, and of a
-    /// row, of squares in the pixel.
+    /// with fewer lines in the pixel first. `first` holds the numbers of the pixel's first column
+    /// and first row of squares.
     pub fn set(
         &mut self,
         place: usize,
@@ -183,10 +185,10 @@ impl BoardLanes {
                 sums[i] += sign * beyond[i];
             }
         }
-        // Rounding errors: for every line, the part of a side beyond the line takes eight
-        // operations on the side's length and on a distance of at most √2. Each of the five sums
-        // per strip has one rounding, and the sum over lines has two. Each cutting line, and the
-        // lines on either side, may also have an error of four roundings of a point.
+        // Rounding errors: for every line, the part of a side beyond the line is computed by eight
+        // operations from the side's length and a distance of at most √2. Each of the five sums per
+        // strip has one rounding, and the sum over lines has two. The rounding of points may also
+        // displace each cutting line, and the lines on either side, by four unit roundoffs.
         //
         // A displaced line sweeps at most √2, the pixel's diagonal, times its displacement. The
         // sign changes there, which doubles the error, and 2√2 < 3.
@@ -254,8 +256,8 @@ impl BoardLanes {
                     let place = if place > 0.0 { place } else { 0.0 };
                     let place = if place < 1.0 { place } else { 1.0 };
                     // After the last strip, there is no line. Both ends of each side of the pixel
-                    // then count as before the line, so that all parts reach to the ends of their
-                    // sides.
+                    // are then treated as lying before the line, so that all parts reach to the
+                    // ends of their sides.
                     let (starts_below, ends_below) =
                         (is_last | (here[i] < n), is_last | (next[i] < n));
                     let is_up = next[i] >= here[i];
@@ -324,9 +326,9 @@ impl BoardLanes {
         failed
     }
 
-    /// Returns twice the signed area of the strips that lies beyond one line of the board's family
-    /// with more lines. `line` is the number of this line, counted from the first square of the
-    /// pixel.
+    /// Returns twice the signed area of those parts of the strips that lie beyond a line. The line
+    /// is one of the board's family with more lines in the pixel; its number is `line`, counted
+    /// from the pixel's first square.
     #[inline(always)]
     fn beyond(&self, line: f64, sides: &[Sides]) -> Lanes {
         let mut area = [0.0; PIXELS];

@@ -284,8 +284,8 @@ fn the_horizon() {
             // A colour's share is half of the integral of signs plus a half, so that the integral's
             // bound may be twice that of a mean.
             assert!(found.bound < 1.8e-9, "{view:?}: {found:?}");
-            // The pixel's vertical slices have edges that cross other lines, and their crossings
-            // are counted from other points.
+            // The pixel's vertical slices are computed in a different way: their edges cross other
+            // lines, and their crossings are counted from other points. The sum must be the same.
             let mut slices = BoundedSum::default();
             for i in 0..5 {
                 let [low, high] = [i, i + 1].map(|i| f64::from(i) / 5.0 - 0.5);
@@ -326,11 +326,13 @@ fn the_end_is_the_limit() {
 }
 
 /// Integrates the board's sign over `polygon` in the limit of a view of 180 degrees, where a pixel
-/// far to the side sees one straight line on the floor. Returns the integral up to the distance
-/// `most` along the line, and the area of the part that shows the line's rest.
+/// far to the side sees one straight line on the floor. Integrates up to the distance `most` along
+/// the line. Returns the integral, and the area of the part of the polygon that shows greater
+/// distances.
 fn brute_limit(view: &PixelView, polygon: &[DVec2], most: f64) -> (f64, f64) {
     // The distance is q = height·x/y at the point (x, y) relative to the middle of the horizon. The
-    // board's coordinates are linear in q. Each q at which one is an integer cuts the polygon.
+    // board's coordinates are linear in q. The polygon is cut at each q at which a coordinate is an
+    // integer.
     let angle = view.degrees.to_radians();
     let factors = [-libm::sin(angle), libm::cos(angle)];
     let q = |p: DVec2| view.height * (p.x + view.place.x) / (p.y + view.place.y);
@@ -374,9 +376,9 @@ fn widest(focal: f64, degrees: f64) -> PixelView {
     }
 }
 
-/// In the widest views, the board's coordinates a and b are nearly proportional. Squares are very
-/// many, and a pixel sees such a narrow strip of them that rounding errors displace them visibly.
-/// The polygon is below the horizon, or reaches it.
+/// In the widest views, the board's coordinates a and b are nearly proportional. A pixel sees a
+/// strip of very many squares that is so narrow that rounding errors displace it visibly. The
+/// polygon is below the horizon, or reaches it.
 #[test]
 fn the_widest_views() {
     for degrees in [30.0, 71.565_051_177, 135.0, 224.9] {
@@ -446,8 +448,7 @@ proptest! {
 
 #[test]
 fn from_straight_above() {
-    // The side of a square is about 1/1000 pixel: each side of the pixel has 1000 squares and a
-    // remainder.
+    // The side of a square is about 1/1000 pixel: each side of the pixel is 1000.5 squares long.
     let board = Homography::new(
         [[1000.5, 0.0, 500.25], [0.0, 1000.5, 500.25]],
         [0.0, 0.0, 1.0],

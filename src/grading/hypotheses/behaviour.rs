@@ -72,9 +72,9 @@ pub enum Rays {
     NewRight,
     /// The roll turns the right vector only, not the upward direction. This skews the picture.
     RightAlone,
-    /// Rays are parallel and start in a window. A pixel of this window is as large as the part of
-    /// the scene that a perspective camera shows in a pixel, at a certain distance from the eye.
-    /// The number is this distance, in metres.
+    /// Rays are parallel. Objects at a certain distance from the eye appear as large as in the
+    /// correct picture, nearer ones smaller and farther ones larger. The number is this distance,
+    /// in metres.
     Parallel(f64),
     /// The projection is that of a fisheye lens: the angle between a ray and the view direction is
     /// proportional to the distance from the picture's middle.
@@ -91,14 +91,14 @@ pub enum Spheres {
     /// vectors reach from the eye to the view plane. The number is the distance of the view plane
     /// from the eye, in metres.
     UnitRays(f64),
-    /// Only the nearer of the two intersections counts.
+    /// Only the nearer of the two intersections is tested. If it is behind the eye or clipped, the
+    /// sphere is not seen.
     LesserRoot,
-    /// Only the farther of the two intersections counts.
+    /// The farther of the two intersections is used instead of the nearer one.
     GreaterRoot,
-    /// The solution of the quadratic equation a·t² + b·t + c = 0 multiplies by a instead of
-    /// dividing by it. Here a is the squared length of the ray's direction vector, which reaches
-    /// from the eye to the view plane. The number is the distance of the view plane from the eye,
-    /// in metres.
+    /// The quadratic equation a·t² + b·t + c = 0 is solved wrongly: the program multiplies by a
+    /// instead of dividing by it. Here a is the squared length of a vector along the ray, from the
+    /// eye to the view plane. The number is the distance of the view plane from the eye, in metres.
     TimesA(f64),
 }
 

@@ -4,26 +4,27 @@
 use std::sync::Arc;
 
 use super::{
-    behaviour::Behaviour,
+    behaviour::{Behaviour, Rays},
     layout::Layout,
     light::{Curve, Effect},
-    parameters::Parameter,
+    parameters::{Owner, Parameter},
 };
 use crate::scene::{FieldOwner as Part, Scene};
 
 /// One mistake of a program.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mistake {
-    /// A row of the table of mistakes. If the row is about a single object, the index of the object
-    /// comes with it.
+    /// A row of the table of mistakes. The number is the index of an object, if the row is about a
+    /// single object.
     Row(&'static MistakeRow, Option<usize>),
     /// A field of the scene has wrong numbers. The values are the field, and the numbers that the
     /// program uses.
     Numbers(Parameter, Vec<f64>),
-    /// An extra patch in the picture. The fields are its colour, in linear light, and its bounding
-    /// rectangle: the least and the greatest column and row.
+    /// The picture has an extra patch. The fields are its colour, in linear light, and its bounding
+    /// rectangle: first the least column and row, then the greatest column and row.
     Patch([f64; 3], [[f64; 2]; 2]),
-    /// Two objects of one colour each, given by their indices, have each other's colours.
+    /// Two objects have exchanged their colours. The numbers are their indices. Each of them has a
+    /// single colour.
     ColorsExchanged(usize, usize),
     /// The pixel filter is too wide or too narrow. The number is its width, in pixels.
     Filter(f64),
@@ -74,6 +75,27 @@ impl Mistake {
         }
     }
 
+    /// Returns the index of the object that the mistake is about. If a block of the scene's file
+    /// describes several objects with the same wrong numbers, it is the first of them. Returns
+    /// `None` if the mistake is about no object, or about two.
+    pub fn object(&self) -> Option<usize> {
+        match self {
+            Self::Row(_, object) => *object,
+            Self::Numbers(parameter, _) => match parameter.owner {
+                Owner::Object(index) => Some(index),
+                Owner::Image | Owner::Camera => None,
+            },
+            Self::Patch(..) | Self::Filter(_) | Self::ColorsExchanged(..) => None,
+        }
+    }
+
+    /// Returns whether the mistake is a wrong number that says how much the camera sees.
+    pub fn is_size(&self) -> bool {
+        const SIZES: [&str; 4] = ["d", "fov", "hfov", "view_height"];
+        matches!(self, Self::Numbers(parameter, _)
+            if parameter.owner == Owner::Camera && SIZES.contains(&parameter.fields[0]))
+    }
+
     /// Returns the number of parameters that describe the mistake. Each parameter adds to the cost
     /// of a hypothesis.
     pub fn parameter_count(&self) -> usize {
@@ -98,7 +120,7 @@ pub struct Candidate {
     pub is_drawn: Vec<bool>,
     /// How the program traces rays and places samples.
     pub behaviour: Behaviour,
-    /// Curve by which the program decodes the colours that it averages.
+    /// Encoding curve that the program undoes before it averages colours.
     pub decoding: Curve,
     /// Curve by which the program encodes the averaged colours.
     pub curve: Curve,
@@ -126,8 +148,8 @@ impl Candidate {
         }
     }
 
-    /// Returns a program with some mistakes. Returns `None` if one of them is impossible in the
-    /// scene or changes nothing.
+    /// Returns a program with some mistakes. Returns `None` if one of them cannot be added to the
+    /// scene and the mistakes before it (see [`Self::with`]).
     pub fn of(scene: &Scene, mistakes: impl IntoIterator<Item = Mistake>) -> Option<Self> {
         let mut mistakes = mistakes.into_iter();
         mistakes.try_fold(Self::correct(scene), |candidate, one| candidate.with(one))
@@ -170,7 +192,7 @@ impl Candidate {
                 if first == second {
                     return None;
                 }
-                let objects = Arc::make_mut(&mut candidate.scene.objects);
+                let objects = candidate.scene.objects_mut();
                 for (at, shape, color) in [(*one, shapes[0], second?), (*other, shapes[1], first?)]
                 {
                     if let Part::Shape(shape) = shape.with("color", color)? {
@@ -211,7 +233,8 @@ impl Candidate {
     }
 
     /// Replaces the wrong numbers of all mistakes by `numbers`, which are in the order of
-    /// [`Self::numbers`]. Returns `None` if the scene cannot have them.
+    /// [`Self::numbers`]. Returns `None` if a number is impossible in the scene, such as a negative
+    /// radius.
     pub fn with_numbers(&self, scene: &Scene, mut numbers: &[f64]) -> Option<Self> {
         let mut mistakes = self.mistakes.clone();
         for mistake in &mut mistakes {
@@ -244,13 +267,17 @@ impl Candidate {
         mistakes.any(|one| matches!(one, Mistake::Filter(_)))
     }
 
+    pub fn has_parallel_rays(&self) -> bool {
+        matches!(self.behaviour.rays, Rays::Parallel(_))
+    }
+
     /// Returns whether the program's picture can be computed exactly, without samples.
     pub fn is_exact(&self) -> bool {
         self.behaviour.is_correct() && !self.is_filtered()
     }
 
-    /// Returns whether both hypotheses have the same mistakes, apart from the numbers of these.
-    /// Also returns `true` if both programs are equal and make no change to the picture's light.
+    /// Returns whether both hypotheses have the same mistakes, although with other numbers. Also
+    /// returns `true` if both programs are equal and make no change to the picture's light.
     pub fn is_same_kind(&self, other: &Self) -> bool {
         if self.effects.is_empty() && other.effects.is_empty() && self.shows_as(other) {
             return true;

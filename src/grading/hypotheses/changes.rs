@@ -1,7 +1,5 @@
 //! The functions by which rows of the table of mistakes change a hypothesis about a program.
 
-use std::sync::Arc;
-
 use glam::DVec3;
 
 use super::{
@@ -54,15 +52,17 @@ pub fn reverse_normal(c: &mut Candidate, object: usize) {
 /// Returns whether a checkerboard is drawn.
 pub fn has_board(c: &Candidate) -> bool {
     let mut drawn = c.scene.objects.iter().zip(&c.is_drawn);
-    drawn.any(|(object, is_drawn)| *is_drawn && matches!(object.shape, Shape::Checkerboard(_)))
+    drawn.any(|(object, is_drawn)| *is_drawn && object.shape.checkerboard().is_some())
 }
 
-/// Offsets the samples by some pixels to the right and down, as seen in the picture's file.
+/// Offsets the samples by some pixels to the right and down. The directions are those of the
+/// program's picture, which may be mirrored or turned.
 pub fn shift(c: &mut Candidate, by: [f64; 2]) {
     c.behaviour.offset = c.layout.source_direction(by);
 }
 
-/// Spreads a picture's pixels over the window as if each row and column had one less.
+/// Increases the distance between the samples of neighbouring pixels. It becomes that of a program
+/// that divides the window into one column and one row less than the picture has.
 pub fn spread_by_one_less(c: &mut Candidate) {
     c.behaviour.spread = sides(c).map(|side| side / (side - 1.0).max(1.0));
 }
@@ -87,8 +87,8 @@ pub fn sides(c: &Candidate) -> [f64; 2] {
     [c.scene.image.width, c.scene.image.height].map(f64::from)
 }
 
-/// Sets the ratio of the window's width to its height, unless it is wrong already, or `aspect` is
-/// the correct ratio.
+/// Sets the ratio of the width to the height of the window, i.e. of the rectangle that the camera
+/// sees. Does nothing if the ratio is wrong already, or if `aspect` is the correct ratio.
 pub fn set_aspect(c: &mut Candidate, aspect: f64) {
     let [width, height] = sides(c);
     let by = aspect * height / width;
@@ -107,12 +107,9 @@ pub fn set_sphere_fault(c: &mut Candidate, spheres: Spheres) {
 /// Sets a fault in how an object is intersected, if its shape can have this fault and no object has
 /// a fault yet.
 pub fn set_hit_fault(c: &mut Candidate, object: usize, hit: HitFault) {
-    let is_about = match (hit, c.scene.objects[object].shape) {
-        (HitFault::WithoutAxis(_), Shape::Box(_)) => true,
-        (HitFault::WithoutAxis(_), _) => false,
-        (_, shape) => matches!(shape, Shape::Triangle(_)),
-    };
-    if is_about && c.behaviour.hit.is_none() {
+    let of_box = matches!(hit, HitFault::WithoutAxis(_));
+    let kind = if of_box { "box" } else { "triangle" };
+    if c.scene.objects[object].shape.kind() == kind && c.behaviour.hit.is_none() {
         c.behaviour.hit = Some((object, hit));
     }
 }
@@ -181,8 +178,23 @@ pub fn lengthen(c: &mut Candidate, by: f64) {
 
 /// Returns the angle β with tan(β/2) = `by` · tan(α/2), where α is `angle`.
 fn widened(angle: Angle, by: f64) -> Angle {
-    let half = libm::atan(by * libm::tan(angle.in_radians() / 2.0));
-    Angle::from_degrees((2.0 * half).to_degrees())
+    twice_arctan(by * libm::tan(angle.in_radians() / 2.0))
+}
+
+/// Returns the angle α with tan(α/2) = `tangent`.
+pub fn twice_arctan(tangent: f64) -> Angle {
+    Angle::from_degrees((2.0 * libm::atan(tangent)).to_degrees())
+}
+
+/// Increases the distance of the view plane from the eye, as if the camera's vector to the right
+/// were not divided by its length.
+pub fn divide_by_sine_of_up(c: &mut Candidate) {
+    let (from, to) = c.scene.camera.view.ends(c.scene.camera.eye);
+    let [up, ahead] = [c.scene.camera.up, to - from].map(DVec3::normalize_or_zero);
+    let length = up.cross(ahead).length();
+    if length > 0.0 {
+        lengthen(c, 1.0 / length);
+    }
 }
 
 /// Multiplies the distance of the view plane from the eye by `by`. If the scene gives a field of
@@ -207,8 +219,9 @@ pub fn exchange_faces(c: &mut Candidate, object: usize, order: [usize; 3]) {
     }
 }
 
-/// Moves a triangle as a program does that takes another point for its centroid. `point` computes
-/// this other point from the vertices. The other point then lies where the centroid should.
+/// Moves a triangle so that one of its other points lies where its centroid should be. `point`
+/// computes this point from the vertices. Does nothing unless the scene describes the triangle by
+/// its centroid.
 pub fn anchor(c: &mut Candidate, object: usize, point: fn([DVec3; 3]) -> DVec3) {
     if let Some(Shape::Triangle(triangle)) = shapes(c).nth(object) {
         let point = point(vertices(&triangle.outline));
@@ -228,8 +241,10 @@ pub fn stretch(c: &mut Candidate, object: usize, by: [DVec3; 2]) {
 }
 
 pub fn shapes(c: &mut Candidate) -> impl Iterator<Item = &mut Shape> {
-    let objects = Arc::make_mut(&mut c.scene.objects).iter_mut();
-    objects.map(|object| &mut object.shape)
+    c.scene
+        .objects_mut()
+        .iter_mut()
+        .map(|object| &mut object.shape)
 }
 
 pub fn look_back(c: &mut Candidate) {

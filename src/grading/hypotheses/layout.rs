@@ -12,8 +12,9 @@ pub struct Layout {
     pub is_upside_down: bool,
     /// Whether rows and columns are exchanged, after mirroring. Set only in a square picture.
     pub is_transposed: bool,
-    /// Number of pixels by which each row starts too late, relative to the row above it, if all
-    /// rows are written one after another. The shift is applied after mirroring and transposition.
+    /// Error of the row length that the program assumes, in pixels, when it finds the start of a
+    /// row in memory. With 1, each row appears one pixel further left than the row above it. The
+    /// error is applied after mirroring and transposition.
     pub stride: i32,
 }
 
@@ -43,7 +44,8 @@ impl Layout {
         [sign(self.is_mirrored) * x, sign(self.is_upside_down) * y]
     }
 
-    /// Returns the part of the correct picture that is shown in a part of the picture.
+    /// Returns an area of the correct picture that contains all pixels shown in a part of the
+    /// picture. `size` is the size of the whole picture.
     pub fn sources(self, part: Area, size: [u32; 2]) -> Area {
         if self.stride != 0 {
             return Area::whole(size[0], size[1]);

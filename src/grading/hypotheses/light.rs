@@ -45,8 +45,8 @@ impl Curve {
     pub fn light(self, seen: f64) -> f64 {
         match self {
             Self::Correct => seen,
-            // A file of floating-point numbers may have negative ones, which cannot be raised to a
-            // power.
+            // A file of floating-point numbers may contain negative light. It is treated as 0,
+            // because it cannot be raised to a power.
             _ if seen < 0.0 => 0.0,
             Self::Missing => linear_to_srgb(seen),
             Self::Twice => srgb_to_linear(seen),
@@ -67,7 +67,8 @@ impl Curve {
         }
     }
 
-    /// Returns how much light an 8-bit step is worth near `light`, if the curve encodes it.
+    /// Returns the difference in light between neighbouring 8-bit values near `light`, if the curve
+    /// encodes light.
     pub fn step(self, light: f64) -> f64 {
         let at = (light.clamp(0.0, 1.0) * LIGHTS as f64).round() as usize;
         self.table()[at][0]
@@ -136,14 +137,15 @@ impl Tabulated {
     }
 }
 
-/// Index that stands for no colour channel, where 0, 1 and 2 stand for red, green and blue.
+/// Index of a channel that does not exist. The indices 0, 1 and 2 stand for red, green and blue.
 pub const NONE: usize = 3;
 
 /// An effect of a program on the light of its picture.
 #[derive(Clone, Copy, Debug)]
 pub enum Effect {
-    /// The colour channels are in another order. The numbers are the channels that appear as red,
-    /// green and blue; [`NONE`] appears as 0.
+    /// The colour channels are in another order. The first number is the channel that is shown as
+    /// red, the second as green, the third as blue. The number [`NONE`] means that the channel is 0
+    /// everywhere.
     Channels([usize; 3]),
     /// Each channel shows the weighted mean of all channels, with these weights.
     Gray([f64; 3]),
@@ -159,11 +161,12 @@ pub enum Effect {
     Sharpened,
     /// The picture is blurred, as if its pixels had this width, in pixels.
     Blur(f64),
-    /// An area of one colour is no part of the scene.
+    /// The picture has an area of one colour that is not in the scene.
     Patch {
         /// Colour of the area, in linear light.
         light: [f64; 3],
-        /// Bounding rectangle of the area: the least and the greatest column and row.
+        /// Bounding rectangle of the area, in pixels: first the least column and row, then the
+        /// greatest column and row.
         area: [[f64; 2]; 2],
     },
 }

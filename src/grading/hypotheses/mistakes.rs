@@ -1,7 +1,7 @@
 //! The table of mistakes that students make. A row has an identifier, a message, advice, and a
 //! function that applies the mistake to a hypothesis about a program.
 
-use std::f64::consts::FRAC_1_SQRT_2;
+use std::{f64::consts::FRAC_1_SQRT_2, mem::swap};
 
 use glam::DVec3;
 
@@ -12,10 +12,11 @@ use super::{
         Shows::{self, AtEdges, Everywhere, InAreas},
     },
     changes::{
-        anchor, distance, exchange_colors, exchange_faces, exchange_sides, gray_of_encoded,
-        has_board, is_square, lengthen, look_back, map_channels, multiply, reverse_normal,
-        set_aspect, set_averaging, set_encoding, set_hit_fault, set_order, set_seen_surface,
-        set_sphere_fault, set_square_rule, shapes, shift, sides, spread_by_one_less, stretch, zoom,
+        anchor, distance, divide_by_sine_of_up, exchange_colors, exchange_faces, exchange_sides,
+        gray_of_encoded, has_board, is_square, lengthen, look_back, map_channels, multiply,
+        reverse_normal, set_aspect, set_averaging, set_encoding, set_hit_fault, set_order,
+        set_seen_surface, set_sphere_fault, set_square_rule, shapes, shift, sides,
+        spread_by_one_less, stretch, twice_arctan, zoom,
     },
     light::{Curve, Effect, NONE},
 };
@@ -65,9 +66,9 @@ const fn row(
     }
 }
 
-/// Writes a row of the table of mistakes for one of several similar mistakes. The first word says
-/// which kind it is. Mistakes of a kind differ only in a part of the message, and in a number or a
-/// function.
+/// Writes a row of the table of mistakes. It saves repeating the text that several similar rows
+/// have in common. The first word selects this text. The other arguments are the part of the
+/// message that differs, and a number or a function.
 #[rustfmt::skip]
 macro_rules! family {
     (window $window:literal, $aspect:expr) => { row("aspect", InAreas, concat!("the picture is stretched: its window is ", $window, ", though the picture is not"), WINDOW, |c, _| set_aspect(c, $aspect)) };
@@ -119,10 +120,7 @@ pub const ROWS: &[MistakeRow] = &[
     row("half_pixel", AtEdges, "samples lie a quarter of a pixel too far up and left", MIDDLE, |c, _| shift(c, [-0.25, -0.25])),
     row("half_pixel", AtEdges, "samples lie a quarter of a pixel too far down and right", MIDDLE, |c, _| shift(c, [0.25, 0.25])),
     row("half_pixel", AtEdges, "pixels are spread over the window as if it had one less in a row and in a column: (i + r)/(width − 1)", MIDDLE, |c, _| spread_by_one_less(c)),
-    row("half_pixel", AtEdges, "the first and the last pixel of a row or column look through the window's border, not half a pixel within it: i/(width − 1)", MIDDLE, |c, _| {
-        spread_by_one_less(c);
-        shift(c, c.behaviour.spread.map(|spread| -0.5 * spread))
-    }),
+    row("half_pixel", AtEdges, "the first and the last pixel of a row or column look through the window's border, not half a pixel within it: i/(width − 1)", MIDDLE, |c, _| { spread_by_one_less(c); shift(c, c.behaviour.spread.map(|spread| -0.5 * spread)) }),
     row("half_pixel", AtEdges, "samples lie only in the upper left quarter of each pixel", MIDDLE, |c, _| { shift(c, [-0.25, -0.25]); c.behaviour.pixel = 0.5 }),
     row("window_one_less", AtEdges, "the window is divided by one less than it has rows, so pixels are too large: s = view_height/(height − 1)", MIDDLE, |c, _| { let height = sides(c)[1]; if height > 1.0 { lengthen(c, (height - 1.0) / height) } }),
     family!(channels "blue, green, red", [2, 1, 0]),
@@ -195,20 +193,14 @@ pub const ROWS: &[MistakeRow] = &[
     row("board_swapped", InAreas, "the checkerboard's colours are exchanged, or it is turned by a quarter or moved by a square", SQUARES, |c, _| exchange_colors(c)),
     row("roll_sign", InAreas, "the roll has the wrong sign", "u' = cos ψ u − sin ψ v and v' = sin ψ u + cos ψ v: a positive roll dips the right side", |c, _| c.scene.camera.roll = -c.scene.camera.roll),
     row("roll_ignored", InAreas, "the roll is ignored", "turn u and v by the roll about the view direction", |c, _| c.scene.camera.roll = Angle::default()),
-    // A roll of 2 degrees becomes 2 radians. They are converted to degrees, the unit of angles in a
-    // scene.
+    // A roll of 2 degrees is taken for 2 radians. A scene has angles in degrees, so 2 radians are
+    // converted to degrees.
     row("roll_unit", InAreas, "the roll's degrees are taken for radians", "sin and cos take radians: 180 degrees are π", |c, _| c.scene.camera.roll = Angle::from_degrees(c.scene.camera.roll.degrees.to_degrees() % 360.0)),
     row("roll_new_u", InAreas, "the roll is done with the new u in the place of the old one, so the picture is skewed", "keep u before it is changed: v' = sin ψ u + cos ψ v has the old u, and your v is built from the new one", |c, _| if c.scene.camera.roll != Angle::default() { c.behaviour.rays = Rays::NewRight }),
     row("roll_u_alone", InAreas, "u alone is turned by the roll, v is not, so the picture is skewed", "a roll turns both: u' = cos ψ u − sin ψ v and v' = sin ψ u + cos ψ v", |c, _| if c.scene.camera.roll != Angle::default() { c.behaviour.rays = Rays::RightAlone }),
     row("up_not_orthogonal", InAreas, "up itself is taken for v, though it is not at right angles to the view direction", "v = w × u, both of length 1", |c, _| c.behaviour.rays = Rays::UpAsTop),
     row("w_not_normalised", InAreas, "w is not divided by its length, so the view plane is |eye − lookat| times as far", "w = (eye − lookat)/|eye − lookat|", |c, _| if let View::Lookat(point) = c.scene.camera.view { lengthen(c, point.distance(c.scene.camera.eye)) }),
-    row("u_not_normalised", InAreas, "u is not divided by its length, so pixels are too small: |up × w| is less than 1", UP,
-        |c, _| {
-            let camera = &c.scene.camera;
-            let ahead = match camera.view { View::Lookat(point) => point - camera.eye, View::Direction(direction) => direction };
-            let length = camera.up.normalize_or_zero().cross(ahead.normalize_or_zero()).length();
-            if length > 0.0 { lengthen(c, 1.0 / length) }
-        }),
+    row("u_not_normalised", InAreas, "u is not divided by its length, so pixels are too small: |up × w| is less than 1", UP, |c, _| divide_by_sine_of_up(c)),
     row("parallel_rays", InAreas, "the rays are parallel: they leave from the window along −w", PERSPECTIVE, |c, _| c.behaviour.rays = Rays::Parallel(distance(c))),
     row("parallel_rays", InAreas, "the rays are parallel: they leave along −w from a window as large as what the camera sees at the point that it looks at", PERSPECTIVE, |c, _| if let View::Lookat(point) = c.scene.camera.view { c.behaviour.rays = Rays::Parallel(point.distance(c.scene.camera.eye)) }),
     row("fisheye", InAreas, "the picture is that of a fish eye: the angle of a ray grows as the distance from the middle does", PERSPECTIVE, |c, _| c.behaviour.rays = Rays::Fisheye),
@@ -217,14 +209,10 @@ pub const ROWS: &[MistakeRow] = &[
     row("sphere_far_root", InAreas, "of a sphere's two roots the greater is taken, so what is inside of it or cuts through it hides it", "of the roots that count, the lesser is the nearer", |c, _| set_sphere_fault(c, Spheres::GreaterRoot)),
     row("sphere_times_a", InAreas, "a sphere's roots are multiplied by a: (−b − q)/2*a is ((−b − q)/2)·a", "(−b − q)/(2*a) needs its brackets", |c, _| set_sphere_fault(c, Spheres::TimesA(distance(c)))),
     row("sphere_radius_root", InAreas, "the radius of spheres is not squared: each has its square root", "c = |eye − center|² − radius²", |c, _| for shape in shapes(c) { if let Shape::Sphere(sphere) = shape { sphere.radius = sphere.radius.sqrt() } }),
-    row("eye_lookat_exchanged", InAreas, "eye and lookat are exchanged", "w = (eye − lookat)/|eye − lookat|",
-        |c, _| if let View::Lookat(point) = c.scene.camera.view {
-            c.scene.camera.view = View::Lookat(c.scene.camera.eye);
-            c.scene.camera.eye = point;
-        }),
+    row("eye_lookat_exchanged", InAreas, "eye and lookat are exchanged", "w = (eye − lookat)/|eye − lookat|", |c, _| if let View::Lookat(point) = &mut c.scene.camera.view { swap(point, &mut c.scene.camera.eye) }),
     row("eye_not_subtracted", InAreas, "lookat is taken for the view direction: the eye is not subtracted", "w = (eye − lookat)/|eye − lookat|", |c, _| if let View::Lookat(point) = c.scene.camera.view && point != DVec3::ZERO { c.scene.camera.view = View::Direction(point) }),
     row("near_far_distance", InAreas, "near and far are compared with distances from the eye, not with depths", CLIPPED, |c, _| c.behaviour.clips_distances = c.scene.camera.near > 0.0 || c.scene.camera.far.is_some()),
-    // Adding zero turns −0 into 0.
+    // Adding zero turns a coordinate −0 into 0, so that `-0` is not printed.
     row("up_negated", InAreas, "up has the wrong sign", UP, |c, _| c.scene.camera.up = -c.scene.camera.up + DVec3::ZERO),
     row("up_ignored", InAreas, "up is ignored: (0, 1, 0) is taken for it", UP, |c, _| c.scene.camera.up = DVec3::Y),
     row("up_ignored", InAreas, "z is taken for up", UP, |c, _| c.scene.camera.up = DVec3::Z),
@@ -232,17 +220,8 @@ pub const ROWS: &[MistakeRow] = &[
     row("fov_halved", InAreas, "half the field of view is taken for all of it", HALVES, |c, _| zoom(c, 2.0)),
     row("fov_doubled", InAreas, "the field of view is taken for half of it", HALVES, |c, _| zoom(c, 0.5)),
     row("looks_back", InAreas, "the camera looks the other way: w has the wrong sign", "w = −f/|f|, f being lookat − eye, and rays leave along −d w", |c, _| look_back(c)),
-    row("looks_back", InAreas, "the camera looks the other way, mirrored: rays leave along d w", "w = −f/|f|, f being lookat − eye, and rays leave along x u + y v − d w",
-        |c, _| {
-            look_back(c);
-            c.scene.camera.roll = -c.scene.camera.roll;
-            c.layout.is_mirrored ^= true;
-        }),
-    row("fov_unit", InAreas, "the field of view's degrees are taken for radians", "tan takes radians: 180 degrees are π",
-        |c, _| if let Lens::Fov(angle) | Lens::HorizontalFov(angle) = &mut c.scene.camera.lens {
-            let half = libm::atan(libm::tan(angle.in_degrees() / 2.0).abs());
-            *angle = Angle::from_degrees((2.0 * half).to_degrees());
-        }),
+    row("looks_back", InAreas, "the camera looks the other way, mirrored: rays leave along d w", "w = −f/|f|, f being lookat − eye, and rays leave along x u + y v − d w", |c, _| { look_back(c); c.scene.camera.roll = -c.scene.camera.roll; c.layout.is_mirrored ^= true }),
+    row("fov_unit", InAreas, "the field of view's degrees are taken for radians", "tan takes radians: 180 degrees are π", |c, _| if let Lens::Fov(angle) | Lens::HorizontalFov(angle) = &mut c.scene.camera.lens { *angle = twice_arctan(libm::tan(angle.in_degrees() / 2.0).abs()) }),
     row("near_ignored", InAreas, "the near plane is ignored", CLIPPED, |c, _| c.scene.camera.near = 0.0),
     row("far_ignored", InAreas, "the far plane is ignored", CLIPPED, |c, _| c.scene.camera.far = None),
     row("view_height_ignored", InAreas, "view_height is ignored: the window is 2 tall", WINDOW, |c, _| c.scene.camera.view_height = 2.0),

@@ -3,7 +3,7 @@
 //!
 //! In: a scene. Out: the fields that the scene uses, their numbers, and scenes with other numbers.
 
-use std::{ops::Range, sync::Arc};
+use std::ops::Range;
 
 use glam::DVec3;
 
@@ -11,7 +11,7 @@ use crate::{
     color::Color,
     math::Angle,
     projection::Projection,
-    scene::{Camera, FieldOwner as Part, Object, Scene, View},
+    scene::{FieldOwner as Part, Object, Scene, View},
     schema::{self, FieldRow as Field, Value},
 };
 
@@ -22,8 +22,8 @@ pub enum Owner {
     Image,
     /// The block `camera` of the scene.
     Camera,
-    /// An object, given by its index. It stands for all objects that the same block of the file
-    /// describes.
+    /// An object, given by its index. If a block of the scene's file describes several objects, the
+    /// first of them stands for all.
     Object(usize),
 }
 
@@ -41,21 +41,17 @@ pub struct Parameter {
 /// that a fit has a number to change. Any value far beyond all objects works.
 pub const NO_FAR: f64 = 1e9;
 
-/// Returns the fields that can be fitted to a picture. `up` is not among them, because it turns the
-/// picture as `roll` does, nor is `view_height`, because it scales the picture as `d` does.
+/// Returns the fields that can be fitted to a picture. The field `up` is left out, because it turns
+/// the picture as `roll` does. The field `view_height` is left out, because it scales the picture
+/// as the distance of the view plane does.
 pub fn fittable(scene: &Scene) -> Vec<Parameter> {
     let mut fitted = all(scene);
     fitted.retain(|parameter| !matches!(parameter.fields[0], "up" | "view_height"));
     // A single corner of a box may be wrong, so each corner can be fitted, too.
-    let sizes = fitted
-        .iter()
-        .filter(|parameter| parameter.fields == ["size"]);
-    let owners: Vec<Owner> = sizes.map(|parameter| parameter.owner).collect();
-    fitted.extend(
-        owners
-            .into_iter()
-            .flat_map(|owner| ["min", "max"].map(|corner| Parameter::new(owner, &[corner]))),
-    );
+    let mut corners = fitted.clone();
+    corners.retain(|parameter| parameter.fields == ["size"]);
+    let of = |it: Parameter| ["min", "max"].map(|corner| Parameter::new(it.owner, &[corner]));
+    fitted.extend(corners.into_iter().flat_map(of));
     if scene.camera.far.is_none() {
         fitted.push(Parameter::new(Owner::Camera, &["far"]));
     }
@@ -64,13 +60,9 @@ pub fn fittable(scene: &Scene) -> Vec<Parameter> {
 
 /// Returns all fields that a scene uses.
 fn all(scene: &Scene) -> Vec<Parameter> {
-    let owners = [Owner::Image, Owner::Camera].into_iter();
-    let blocks = scene.objects.chunk_by(Object::is_beside);
-    let firsts = blocks.scan(0, |next, block| {
-        *next += block.len();
-        Some(*next - block.len())
-    });
-    let owners = owners.chain(firsts.map(Owner::Object));
+    let is_first = |&at: &usize| at == 0 || !scene.objects[at].is_beside(&scene.objects[at - 1]);
+    let firsts = (0..scene.objects.len()).filter(is_first).map(Owner::Object);
+    let owners = [Owner::Image, Owner::Camera].into_iter().chain(firsts);
     let mut found: Vec<Parameter> = owners
         .flat_map(|owner| {
             let fields = schema::block(owner.kind(scene)).map_or(&[][..], |block| block.fields);
@@ -162,8 +154,8 @@ impl Parameter {
         Self { owner, fields }
     }
 
-    /// Returns a description of what the fields belong to, for messages. It mentions the other
-    /// objects of the same block.
+    /// Returns a description of what the fields belong to, for messages. If it is an object whose
+    /// block in the file describes several objects, the description mentions the others.
     pub fn owner_name(&self, scene: &Scene) -> String {
         let name = self.owner.name(scene);
         if self.owner.others(scene).is_empty() {
@@ -250,21 +242,17 @@ impl Parameter {
                 Value::Angle(_) => Value::Angle(Angle::from_degrees(own[0])),
                 _ => Value::Number(own[0]),
             };
-            part = match (part, *field, after) {
-                (Part::Camera(camera), "far", Value::Number(far)) => Part::Camera(Camera {
-                    far: Some(far),
-                    ..camera
-                }),
-                (part, field, after) => part.with(field, after)?,
-            };
+            // A missing far plane is added here, because only an existing field can be changed.
+            if let (Part::Camera(camera), "far") = (&mut part, *field) {
+                camera.far = Some(own[0]);
+            }
+            part = part.with(field, after)?;
         }
         part.is_possible().then(|| {
             match (part, self.owner) {
                 (Part::Image(image), _) => changed.image = image,
                 (Part::Camera(camera), _) => changed.camera = camera,
-                (Part::Shape(shape), Owner::Object(index)) => {
-                    Arc::make_mut(&mut changed.objects)[index].shape = shape
-                }
+                (Part::Shape(shape), Owner::Object(at)) => changed.objects_mut()[at].shape = shape,
                 (Part::Shape(_), _) => {}
             }
             changed
@@ -275,12 +263,8 @@ impl Parameter {
     /// object has no name, or if the objects of its block have different values.
     pub fn arguments(&self, scene: &Scene) -> Vec<String> {
         let values = self.values(scene);
-        let is_same = |index| {
-            let part = Owner::Object(index).part(scene);
-            let own = self.fields.iter().filter_map(|field| part.value(field));
-            own.eq(values.iter().copied())
-        };
-        if !self.owner.others(scene).all(is_same) {
+        let of = |index| Self::new(Owner::Object(index), &self.fields).values(scene);
+        if self.owner.others(scene).any(|index| of(index) != values) {
             return Vec::new();
         }
         let owner = match self.owner {
@@ -303,9 +287,13 @@ impl Parameter {
             .collect()
     }
 
-    /// Returns for each number the change that moves the picture by about `pixels` pixels. Colours
-    /// move nothing; for their channels, the change is 8 of 255.
+    /// Returns for each number the change that moves the picture by about `pixels` pixels. A change
+    /// of colour moves nothing, so the result for each colour channel is 8 or −8, on a scale from 0
+    /// to 255.
     pub fn steps(&self, scene: &Scene, pixels: f64) -> Vec<f64> {
+        if self.is_color() {
+            return self.numbers(scene).into_iter().map(inward).collect();
+        }
         let projection = Projection::quick(&scene.camera, &scene.image);
         // Width of a pixel at the distance of a point, in metres.
         let pixel_at =
@@ -324,9 +312,6 @@ impl Parameter {
             },
         };
         let step = |(field, value): (&&'static str, Value)| match (*field, value) {
-            (_, Value::Color(color)) => color.srgb.map(inward).to_vec(),
-            (_, Value::Colors(colors)) => colors.map(|color| color.srgb.map(inward)).concat(),
-            (_, Value::FaceColors(colors)) => colors.map(|color| color.srgb.map(inward)).concat(),
             ("normal", Value::Vector(normal)) => vec![0.03 * normal.length(); 3],
             ("direction", Value::Vector(direction)) => {
                 vec![direction.length() * projection.pitch; 3]
@@ -339,14 +324,14 @@ impl Parameter {
             ("radius", _) => vec![pixel],
             ("y", Value::Number(y)) => vec![2.0 / wide * (scene.camera.eye.y - y).abs().max(1e-3)],
             (_, Value::Number(number)) => vec![2.0 / wide * number.abs()],
-            (_, Value::Method(_)) => Vec::new(),
+            _ => Vec::new(),
         };
         let steps = self.fields.iter().zip(self.values(scene)).flat_map(step);
-        let by = if self.is_color() { 1.0 } else { pixels };
-        steps.map(|step| by * step).collect()
+        steps.map(|step| pixels * step).collect()
     }
 
-    /// Returns whether the parameter is a colour, which moves nothing in the picture.
+    /// Returns whether the parameter is a colour. A change of colour does not move anything in the
+    /// picture.
     pub fn is_color(&self) -> bool {
         matches!(self.fields[0], "color" | "colors" | "background")
     }

@@ -15,14 +15,14 @@ use super::{linear_system::solve, prediction::Prediction};
 /// deviations. A χ² variable with six degrees of freedom exceeds 50 with a probability below 10⁻⁸.
 const CHANCE: f64 = 50.0;
 
-/// Displacement of edges that a single sample per pixel may seem to cause, in pixels. For n samples
-/// per pixel, it is divided by n. If the samples have the same places in all pixels, their mean may
-/// lie off the pixel's middle; for a Hammersley set it does by 1/(2n). The value is greater than
-/// 1/2 because n is estimated from noise, and the estimate is too large for such samples.
+/// Displacement of edges that is attributed to samples at the same places in all pixels, in pixels,
+/// if each pixel has one sample. For n samples, it is divided by n. The mean of such samples may
+/// lie off the pixel's middle; in a Hammersley set, the distance is 1/(2n). The value is greater
+/// than 1/2 because n is estimated from noise, and is overestimated for such samples.
 const OFF_MIDDLE: f64 = 0.75;
-/// Maximum displacement that is attributed to few samples per pixel, in pixels. A larger
-/// displacement counts as a mistake, however few the samples are. With a larger limit, mistakes in
-/// pictures with few samples would be overlooked.
+/// Maximum displacement that is attributed to a small number of samples per pixel, in pixels. A
+/// larger displacement counts as a mistake. With a larger limit, mistakes in pictures with few
+/// samples would be overlooked.
 const MOST_OFF_MIDDLE: f64 = 0.15;
 
 /// Number of coefficients of an affine displacement: a constant and the slopes in x and y, for each
@@ -37,17 +37,17 @@ const SURE: f64 = 8.0;
 /// without noise. The correct value is 1. With a smaller margin, errors of the estimate would be
 /// reported; with a larger one, slight blurs would be overlooked.
 const WIDE: f64 = 1.4;
-/// Addition to the greatest squared pixel width that counts as correct ([`WIDE`]), for one sample
-/// per pixel, in squared pixels. For n samples per pixel, an nth of it is added. It is needed
-/// because few samples at the same places in all pixels make a correct picture less sharp.
+/// Extra tolerance of the squared pixel width above [`WIDE`], in squared pixels, if each pixel has
+/// one sample. For n samples per pixel, it is divided by n. It is needed because few samples at the
+/// same places in all pixels make a correct picture less sharp.
 const WIDER: f64 = 3.0;
 /// Greatest amount by which a squared pixel width may lie below 1, the correct value, without being
 /// reported, in squared pixels. It holds for a picture without noise. With a larger value, pixels
 /// that are slightly too narrow would be overlooked.
 const NARROW: f64 = 0.25;
-/// Addition to the amount by which a squared pixel width may lie below 1 ([`NARROW`]), for one
-/// sample per pixel, in squared pixels. For n samples per pixel, an nth of it is added. It is
-/// needed because few samples make a correct picture sharper.
+/// Extra tolerance of the squared pixel width below 1, in addition to [`NARROW`], in squared
+/// pixels, if each pixel has one sample. For n samples per pixel, it is divided by n. It is needed
+/// because few samples make a correct picture sharper.
 const NARROWER: f64 = 5.0;
 
 /// Greatest squared width of a pixel, in squared pixels, that counts as correct in a JPEG, whose
@@ -86,8 +86,9 @@ struct NormalEquations {
 }
 
 impl NormalEquations {
-    /// Adds the equation of one channel of a pixel. `row` has the factors of the six unknown
-    /// coefficients. The sum of the products should be `difference`, whose variance is `variance`.
+    /// Adds the equation of one channel of a pixel: the six unknown coefficients, each multiplied
+    /// by its factor in `row`, should add up to `difference`. The variance of `difference` is
+    /// `variance`.
     fn add(&mut self, row: &[f64; TERMS], difference: f64, weight: f64, variance: f64) {
         for (j, one) in row.iter().enumerate() {
             let weighted = weight * one;
@@ -100,9 +101,10 @@ impl NormalEquations {
         }
     }
 
-    /// Solves for the displacement, and reduces it by up to `off_middle` pixels in each direction,
-    /// which few samples may cause. `noise` is the ratio of the errors' real variance to the
-    /// assumed one. Returns `None` if the displacement may be chance.
+    /// Solves for the displacement. Its constant part is reduced by up to `off_middle` pixels in
+    /// each direction, because a small number of samples per pixel may seem to displace edges by
+    /// this distance. `noise` is the real variance of the errors divided by the assumed one.
+    /// Returns `None` if the displacement may be chance.
     fn displacement(&self, off_middle: f64, noise: f64) -> Option<Displacement> {
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
         let full = |matrix: &Symmetric| -> Vec<Vec<f64>> {
@@ -124,7 +126,8 @@ impl NormalEquations {
         }
         let product = fitted.iter().zip(&normal);
         let product: f64 = product.map(|(x, row)| x * dot(&fitted, row)).sum();
-        // Only the part of a displacement along the gradient is visible.
+        // Only the part of a displacement along the gradient is visible, so `length` is the root
+        // mean square of this part.
         let length = (product / (normal[0][0] + normal[3][3])).sqrt();
         (square > CHANCE * noise).then_some(Displacement { length, by, square })
     }

@@ -17,8 +17,8 @@ use crate::{
     scene::{Checkerboard, Cuboid, Scene, Shape, Sphere},
 };
 
-/// Half the extent of a box along an axis in which its sides are missing, in metres. It stands for
-/// infinity, so any value far beyond the scene works.
+/// Half the width, in metres, of a box that lacks the faces perpendicular to an axis. Along this
+/// axis it should be infinitely wide, so any value far beyond the scene works.
 const FAR: f64 = 1e9;
 
 /// Stride between the samples that are tested first, to find out whether a cell has one colour. A
@@ -63,7 +63,6 @@ impl FaultyTracer {
     /// curve by which it decodes colours.
     pub fn new(scene: &Scene, behaviour: Behaviour, decoding: Curve) -> Self {
         let mut projection = Projection::quick(&scene.camera, &scene.image);
-        let everywhere = [DVec2::NEG_INFINITY, DVec2::INFINITY];
         let right_projection = projection;
         let is_in_place = matches!(behaviour.rays, Rays::Correct)
             && behaviour.aspect == 1.0
@@ -86,21 +85,15 @@ impl FaultyTracer {
             |color: Color| DVec3::from(color.to_linear()).map(|light| decoding.light(light));
         let objects = scene.objects.iter().enumerate().map(|(at, object)| {
             let mut shape = by_vertices(object.shape);
-            let hit = behaviour
-                .hit
-                .and_then(|(own, hit)| (own == at).then_some(hit));
+            let hit = behaviour.hit.filter(|hit| hit.0 == at).map(|hit| hit.1);
             if let (Some(HitFault::WithoutAxis(axis)), Shape::Box(cuboid)) = (hit, &mut shape) {
                 (cuboid.min[axis], cuboid.max[axis]) = (-FAR, FAR);
             }
-            let bounds = if is_in_place && hit.is_none() {
-                bounds(&shape, &right_projection)
-            } else {
-                None
-            };
+            let bounds = bounds(&shape, &right_projection).filter(|_| is_in_place && hit.is_none());
             Traced {
                 shape,
                 hit,
-                bounds: bounds.unwrap_or(everywhere),
+                bounds: bounds.unwrap_or([DVec2::NEG_INFINITY, DVec2::INFINITY]),
                 colors: shape.colors().map(decoding),
             }
         });
@@ -116,14 +109,15 @@ impl FaultyTracer {
 
     /// Takes samples in each pixel of a part of the picture, and returns their means and variances.
     pub fn moments(&self, part: Area, samples: usize) -> Moments {
-        // The places of samples are spread around the middle of the pixel as the program spreads
-        // them.
+        // The faulty program may spread its samples over more or less than a pixel, so their
+        // distances from the pixel's middle are scaled.
         let of_pixel = |place: DVec2| 0.5 + (place - 0.5) * self.behaviour.pixel;
         let places: Vec<DVec2> = lattice(samples).into_iter().map(of_pixel).collect();
         let corners = CORNERS.map(of_pixel);
         let count = places.len() as f64;
-        // Whether the cell that was sampled last in each column shows one colour. It is in the
-        // current row for columns to the left, and in the row above for the others.
+        // Whether a cell shows one colour. There is an entry for each column, which is overwritten
+        // row by row. So at each cell, it is known whether the cell above and the cell to the left
+        // show one colour.
         let mut is_flat = vec![false; part.width as usize];
         let pixel = |(x, y): (u32, u32)| {
             let corner = DVec2::new(f64::from(x), f64::from(y));
@@ -184,7 +178,8 @@ impl FaultyTracer {
         }
         let length = match (self.behaviour.clips_distances, self.behaviour.rays) {
             (true, _) => ray.length(),
-            // Depth per unit of the ray's parameter t. It is 1 for rays of other kinds.
+            // Depth per unit of the ray's parameter t. The direction vectors of all other kinds of
+            // rays have the depth 1.
             (false, Rays::UpAsTop | Rays::Fisheye) => ray.dot(self.projection.ahead),
             (false, _) => 1.0,
         };
@@ -293,9 +288,10 @@ impl FaultyTracer {
         }
     }
 
-    /// Returns the parameter t of the hit that is seen, out of the two hits of one object.
-    /// `crossings` has the parameters of both hits, the lesser first. `length` is the depth or the
-    /// distance per unit of t, whichever is compared with the near and far planes.
+    /// Returns the ray's parameter t at the visible hit of one object, or `None` if no hit is
+    /// visible. `crossings` contains t at both hits, the lesser first. `length` is the depth per
+    /// unit of t; or the distance per unit of t, if distances are compared with the near and far
+    /// planes.
     fn first(&self, crossings: [f64; 2], length: f64) -> Option<f64> {
         let counting = crossings.map(|t| Some(t).filter(|t| self.counts(*t, length)));
         match counting {
@@ -357,7 +353,7 @@ pub fn bounds(shape: &Shape, projection: &Projection) -> Option<[DVec2; 2]> {
     }
     let least = places.into_iter().fold(DVec2::INFINITY, DVec2::min);
     let most = places.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
-    // A margin for rounding errors.
+    // A margin for rounding errors is added on all sides.
     Some([least - 1e-6, most + 1e-6])
 }
 

@@ -1,8 +1,8 @@
 //! Divides the compared part of a picture into cells. For the search, which must be fast, a cell
-//! spans several pixels; for the final judgement, a cell is a single pixel.
+//! spans several pixels. For the final judgement, a cell is a single pixel.
 //!
-//! The cells are the pixels of a smaller picture of the same scene with the same middle, so they
-//! are rendered like any picture.
+//! The cells are rendered as the pixels of a smaller picture. Its camera looks at the same scene
+//! from the same place in the same direction.
 
 use glam::{DVec2, DVec3};
 
@@ -21,39 +21,36 @@ pub struct Grid {
     /// from the top left of the whole picture.
     pub cells: Area,
     /// Number of cells in a row and in a column of the whole picture.
-    size: [u32; 2],
+    pub size: [u32; 2],
     /// Width of the border that no cell covers, in pixels of the whole picture. There is an equal
     /// border at the left and right, and at the top and bottom.
     margin: DVec2,
-    /// Upper left corner of the compared part, in pixels of the whole picture.
-    corner: DVec2,
 }
 
 impl Grid {
     /// Covers a part of a picture with a grid. The part's longer side has at most `longest` cells.
+    /// If the part contains no complete cell of this size, each pixel becomes a cell.
     pub fn new(image: &Image, part: Area, longest: u32) -> Self {
+        let point = |x: u32, y: u32| DVec2::new(f64::from(x), f64::from(y));
         let of = |factor: u32| {
             let size = [image.width / factor, image.height / factor];
-            let left = |pixels: u32, cells: u32| f64::from(pixels - cells * factor) / 2.0;
-            let margin = DVec2::new(left(image.width, size[0]), left(image.height, size[1]));
-            let within = |start: u32, length: u32, margin: f64| {
-                let cell = |at: u32| (f64::from(at) - margin) / f64::from(factor);
-                let first = cell(start).ceil().max(0.0) as u32;
-                first..(cell(start + length).floor() as u32).max(first)
+            let covered = f64::from(factor) * DVec2::from(size.map(f64::from));
+            let margin = (point(image.width, image.height) - covered) / 2.0;
+            let cell = |x, y| (point(x, y) - margin) / f64::from(factor);
+            let first = cell(part.x, part.y).ceil().max(DVec2::ZERO);
+            let end = cell(part.x + part.width, part.y + part.height).floor();
+            let count = end.max(first) - first;
+            let cells = Area {
+                x: first.x as u32,
+                y: first.y as u32,
+                width: count.x as u32,
+                height: count.y as u32,
             };
-            let columns = within(part.x, part.width, margin.x);
-            let rows = within(part.y, part.height, margin.y);
             Self {
                 factor,
-                cells: Area {
-                    x: columns.start,
-                    y: rows.start,
-                    width: columns.len() as u32,
-                    height: rows.len() as u32,
-                },
+                cells,
                 size,
                 margin,
-                corner: DVec2::new(f64::from(part.x), f64::from(part.y)),
             }
         };
         let factor = part.width.max(part.height).div_ceil(longest).max(1);
@@ -73,19 +70,12 @@ impl Grid {
         self.cells.width as usize
     }
 
-    /// Returns the number of cells in a row and in a column of the whole picture.
-    pub fn size(&self) -> [u32; 2] {
-        self.size
-    }
-
     /// Returns the middle of a cell, in pixels of the whole picture. `index` counts the cells of
     /// the part, row by row.
     pub fn middle(&self, index: usize) -> DVec2 {
+        let first = DVec2::new(f64::from(self.cells.x), f64::from(self.cells.y));
         let (x, y) = (index % self.width(), index / self.width());
-        let cell = DVec2::new(
-            f64::from(self.cells.x) + x as f64,
-            f64::from(self.cells.y) + y as f64,
-        );
+        let cell = first + DVec2::new(x as f64, y as f64);
         self.margin + (cell + 0.5) * f64::from(self.factor)
     }
 
@@ -106,8 +96,8 @@ impl Grid {
             let pitch = Projection::quick(&camera, &image).pitch;
             [image.width, image.height] = self.size;
             camera.lens = Lens::Distance(1.0);
-            // Extreme lenses would give 0 or infinity, so the result is clamped to positive finite
-            // numbers.
+            // Extreme lenses would make the height 0 or infinite, so it is clamped to positive
+            // finite numbers.
             let view_height = f64::from(image.height * self.factor) * pitch;
             camera.view_height = view_height.clamp(f64::MIN_POSITIVE, f64::MAX);
         }
@@ -120,8 +110,8 @@ impl Grid {
         let factor = f64::from(self.factor);
         // Iterates over the columns, or the rows, of pixels that a cell overlaps. Each comes with
         // the length of the overlap, in pixels.
-        let shares = |cell: u32, margin: f64, corner: f64| {
-            let start = margin + f64::from(cell) * factor - corner;
+        let shares = |cell: u32, margin: f64| {
+            let start = margin + f64::from(cell) * factor;
             let end = start + factor;
             let share = move |at: u32| (f64::from(at) + 1.0).min(end) - f64::from(at).max(start);
             (start.floor() as u32..end.ceil() as u32).map(move |at| (at, share(at)))
@@ -131,8 +121,8 @@ impl Grid {
             // exact.
             let mut first = None;
             let (mut sum, mut total) = (DVec3::ZERO, 0.0);
-            for (row, height) in shares(y, self.margin.y, self.corner.y) {
-                for (column, width) in shares(x, self.margin.x, self.corner.x) {
+            for (row, height) in shares(y, self.margin.y) {
+                for (column, width) in shares(x, self.margin.x) {
                     let pixel = pixel(column, row);
                     if !pixel.x.is_nan() {
                         let first = *first.get_or_insert(pixel);

@@ -54,8 +54,8 @@ pub fn coded(jpeg: &Jpeg, prediction: &Prediction, part: Area) -> Option<Vec<DVe
 pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<DVec3> {
     let (mean, width) = (&prediction.moments.mean, prediction.width);
     let height = mean.len() / width;
-    // Weights of chroma in the red, green and blue channels, by JPEG's conversion from YCbCr. Green
-    // has both kinds of chroma, whose weights are added.
+    // Weights by which JPEG's conversion from YCbCr multiplies chroma, for the red, green and blue
+    // channels. Green depends on both chroma values, Cb and Cr, so its two weights are added.
     const SHARES: [f64; 3] = [1.402, 0.344 + 0.714, 1.772];
     let side = (BLOCK / factor).max(1);
     let reach = MIXED.div_ceil(factor);
@@ -80,16 +80,19 @@ pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<DVe
                 table.mean / count
             }
         };
-        // The colours of neighbouring blocks mix, too.
+        // Chroma of half the resolution mixes the colours of neighbouring pixels, so the range of
+        // their colours adds to the variance.
         let [least, most] = range(mean, width, at, reach);
         let mixed = most - least;
         DVec3::from([0, 1, 2].map(|i| {
-            // Values are rounded or truncated to whole numbers before and after the transform.
-            // Truncation has a mean squared error of 1/3, which is four times that of rounding.
+            // In addition to the coefficients, values are rounded or truncated to whole numbers
+            // before and after the transform. The mean squared error of truncation is 1/3, four
+            // times that of rounding, so these terms have the factor 4.
             let share = SHARES[i] * SHARES[i];
             let steps = square(&jpeg.luma) + share * square(&jpeg.chroma) + 4.0 * (2.0 + share);
-            // An 8-bit step is worth more light in bright areas. So the change of light over five
-            // standard deviations upwards is computed, and divided by five (`DEVIATIONS`).
+            // In bright areas, the difference in light between neighbouring 8-bit values is
+            // greater. So the change of light over five standard deviations upwards is computed,
+            // and divided by five (`DEVIATIONS`).
             let by = DEVIATIONS * STEP * (steps / 12.0).sqrt();
             let own = [mean[at][i], by];
             if known[i].0 != own {

@@ -18,6 +18,7 @@ use super::{
     work::Work,
 };
 use crate::{
+    area::Area,
     film::{Film, Jpeg},
     grading::hypotheses::{Candidate, Curve},
 };
@@ -26,8 +27,8 @@ use crate::{
 pub struct Level<'a> {
     pub grid: Grid,
     film: &'a Film,
-    /// Upper left corner of the compared part, in pixels of the film.
-    corner: [u32; 2],
+    /// The part of the whole picture that the film shows.
+    part: Area,
     /// Observed light of the cells for each curve that may have encoded it. Computed on demand.
     observed: [OnceCell<Vec<DVec3>>; Curve::COUNT],
     /// Number of samples per cell with which hypotheses are rendered; `None` if they are rendered
@@ -43,19 +44,20 @@ pub struct Level<'a> {
 }
 
 impl<'a> Level<'a> {
-    /// Creates a picture at the resolution of a grid. `corner` is the upper left corner of the
-    /// compared part, in pixels of the film.
+    /// Creates a picture at the resolution of a grid. The film shows the part `part` of the whole
+    /// picture. `samples` is the number of samples per cell, or `None` to render hypotheses
+    /// exactly.
     pub fn new(
         grid: Grid,
         film: &'a Film,
-        corner: [u32; 2],
+        part: Area,
         samples: Option<usize>,
         jpeg: Option<Jpeg>,
     ) -> Self {
         Self {
             grid,
             film,
-            corner,
+            part,
             observed: std::array::from_fn(|_| OnceCell::new()),
             samples,
             jpeg,
@@ -64,11 +66,11 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// Returns a copy of the level in which the error of sampling is added to the observed light.
-    /// The error is the difference between two predictions for one hypothesis, a sampled and an
-    /// exact one. It cancels in comparisons with other sampled predictions.
+    /// Returns a copy of the level with other observed light, for comparisons with sampled
+    /// predictions. The error that sampling causes in the prediction of one hypothesis is added.
+    /// Similar hypotheses have the same sampling error, so it cancels in their comparisons.
     pub fn with_error(&self, sampled: &Prediction, exact: &Prediction) -> Self {
-        let mut level = Self::new(self.grid, self.film, self.corner, self.samples, self.jpeg);
+        let mut level = Self::new(self.grid, self.film, self.part, self.samples, self.jpeg);
         level.base = self.base.clone();
         let means = sampled.moments.mean.iter().zip(&exact.moments.mean);
         let errors: Vec<DVec3> = means.map(|(sampled, exact)| sampled - exact).collect();
@@ -106,8 +108,7 @@ impl<'a> Level<'a> {
     /// by `curve`.
     pub fn observed(&self, curve: Curve) -> &[DVec3] {
         self.observed[curve as usize].get_or_init(|| {
-            let [left, top] = self.corner;
-            let pixel = |x, y| DVec3::from(self.film.pixel(left + x, top + y));
+            let pixel = |x, y| DVec3::from(self.film.pixels()[self.part.index(x, y)]);
             if curve == Curve::Correct {
                 return self.grid.reduce(pixel);
             }
@@ -128,11 +129,10 @@ impl<'a> Level<'a> {
         if part == self.grid.cells {
             return Arc::clone(rendering);
         }
-        let [left, top] = self.corner;
-        let index = |x: u32, y: u32| ((top + y) * part.width + left + x) as usize;
-        let mean = self.grid.reduce(|x, y| pixels.mean[index(x, y)]);
+        let mean = self.grid.reduce(|x, y| pixels.mean[part.index(x, y)]);
         let squares = self.grid.reduce(|x, y| {
-            let (mean, variance) = (pixels.mean[index(x, y)], pixels.variance[index(x, y)]);
+            let at = part.index(x, y);
+            let (mean, variance) = (pixels.mean[at], pixels.variance[at]);
             mean * mean + variance
         });
         let variance =
@@ -146,10 +146,8 @@ impl<'a> Level<'a> {
     /// correct.
     pub fn predict(&self, rendering: &Rendering) -> Prediction<'_> {
         let candidate = &rendering.candidate;
-        let (seen, moments) = (
-            self.observed(candidate.curve),
-            rendering.laid_out(&self.grid),
-        );
+        let seen = self.observed(candidate.curve);
+        let moments = rendering.laid_out(&self.grid);
         let mut prediction = Prediction::new(seen, self.grid.width(), moments, candidate.curve);
         prediction.apply(&candidate.effects, &self.grid);
         if let Some(jpeg) = self.jpeg {

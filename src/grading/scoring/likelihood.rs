@@ -52,13 +52,13 @@ struct PixelError {
 
 impl PixelError {
     fn of(prediction: &Prediction, at: usize) -> Self {
-        let variance = prediction.moments.variance[at];
+        let (variance, steps) = (prediction.moments.variance[at], prediction.steps(at));
         // A pixel that is NaN gives no information.
         let is_empty = prediction.observed[at].x.is_nan();
         Self {
             difference: prediction.difference(at),
             variance: variance.map(|one| if one < FLAT || is_empty { 0.0 } else { one }),
-            rounding: rounding(prediction, at),
+            rounding: steps * steps / 12.0 + prediction.moments.mean_variance[at],
         }
     }
 
@@ -82,13 +82,6 @@ impl PixelError {
     }
 }
 
-/// Returns the variance of a pixel's error that does not come from sampling: the variance of
-/// rounding plus the variance of the predicted mean.
-fn rounding(prediction: &Prediction, at: usize) -> DVec3 {
-    let steps = prediction.steps(at);
-    steps * steps / 12.0 + prediction.moments.mean_variance[at]
-}
-
 impl Prediction<'_> {
     /// Scores how well the prediction fits the picture.
     pub fn score(&self) -> Score {
@@ -97,8 +90,8 @@ impl Prediction<'_> {
         // Pixels of one colour have no sampling error, so they say nothing about `share`.
         let has_several = |one: &&PixelError| one.variance != DVec3::ZERO;
         let mixed: Vec<&PixelError> = errors.iter().filter(has_several).collect();
-        // Variance of errors relative to that of one sample: 1/n for n samples per pixel. At most
-        // 1.
+        // Estimate of 1/n, where n is the number of samples per pixel: the variance of a pixel's
+        // error divided by the variance of one sample.
         let mut share: f64 = 1.0;
         for _ in 0..ROUNDS {
             let (mut above, mut below) = (0.0, 0.0);
@@ -125,8 +118,9 @@ impl Prediction<'_> {
             _ => -stretches.sum::<f64>(),
         };
         let (mut squares, mut expected) = (0.0, 0.0);
-        // Sums over the pixels that mix several colours: the variances of one sample, and the
-        // squared differences less the variance of rounding.
+        // Two sums over the pixels that mix several colours. `of_samples` is the sum of the
+        // variances of one sample. `beyond` is the sum of the squared differences, minus the
+        // variance of rounding.
         let (mut of_samples, mut beyond) = (0.0, 0.0);
         for one in &errors {
             likelihood += one.density(share);
@@ -137,7 +131,8 @@ impl Prediction<'_> {
             let has_several = one.variance.cmpgt(DVec3::ZERO);
             beyond += DVec3::select(has_several, square - one.rounding, DVec3::ZERO).element_sum();
         }
-        // Noise that is less than that of 100 000 samples per pixel cannot be told from rounding.
+        // Noise that is less than that of 100 000 samples per pixel cannot be distinguished from
+        // rounding.
         let is_known = beyond > 1e-5 * of_samples;
         Score {
             likelihood,
@@ -149,13 +144,14 @@ impl Prediction<'_> {
         }
     }
 
-    /// Tests whether the picture shows the change from this prediction to another one. The first
-    /// number is the observed fraction of the change: 0 if the picture fits this prediction, 1 if
-    /// it fits the other. The second is this fraction in standard deviations, for which the greater
-    /// variance of both predictions is used. `score` belongs to this prediction.
+    /// Tests whether the picture shows the change from one prediction, `self`, to another one,
+    /// `other`. The first result is the observed fraction of the change: 0 if the picture fits
+    /// `self`, and 1 if it fits `other`. The second result is this fraction divided by its standard
+    /// deviation. `score` is the score of `self`.
     pub fn observed_share(&self, score: &Score, other: &Self) -> [f64; 2] {
         let mut deviations = self.deviations();
-        // If the two predictions assume different encodings, their variances are not comparable.
+        // Each variance is the greater one of the two predictions. But if they assume different
+        // encodings, their variances are not comparable, so those of `self` are used.
         let is_alike = self.curve == other.curve;
         if is_alike {
             let others = deviations.iter_mut().zip(other.deviations());

@@ -3,13 +3,13 @@
 //! In: a hypothesis, and a picture at one resolution (`level`), which is divided into cells
 //! (`grid`). Out: a `prediction` of what the cells show.
 //!
-//! First, a `rendering` of the hypothesis gives the mean and the variance of each cell (`moments`).
-//! It is exact, unless the grid is the coarsest one or the program traces rays in a wrong way that
-//! no other scene can express; then the `faulty_tracer` takes samples. Next, pixels are rearranged,
-//! and effects on light and `jpeg` coding are applied.
+//! First, a `rendering` of the hypothesis computes the mean and the variance of each cell
+//! (`moments`). They are exact if the program traces the rays of its scene correctly. If it does
+//! not, or on the coarsest grid, the `faulty_tracer` estimates them from samples. Next, pixels are
+//! rearranged, and effects on light and `jpeg` coding are applied.
 //!
-//! A prediction says how likely the picture is (`likelihood`), which pixels are wrong however they
-//! were sampled (`strays`), and whether edges are displaced (`displacement`). `work` counts the
+//! A prediction says how likely the picture is (`likelihood`), which pixels are wrong whatever the
+//! samples were (`strays`), and whether edges are displaced (`displacement`). `work` counts the
 //! cost.
 
 mod displacement;

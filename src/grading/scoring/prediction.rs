@@ -55,11 +55,11 @@ pub struct Prediction<'a> {
     of_cut_off: OnceCell<Vec<DVec3>>,
 }
 
-/// Blurs cells by a Gaussian of the given variance, in squared cells. There are `width` cells in a
-/// row.
+/// Blurs cells by a Gaussian. `variance` is its variance, in squared cells. There are `width` cells
+/// in a row.
 ///
-/// The weights a, 1 − 2a and a, of a cell's neighbour, the cell itself and the other neighbour,
-/// have the variance 2a. Applying them repeatedly, with a ≤ 1/16, approximates a Gaussian.
+/// A kernel of three cells with the weights a, 1 − 2a and a has the variance 2a. Applying it
+/// repeatedly, with a ≤ 1/16, approximates a Gaussian.
 fn blurred(mut cells: Vec<DVec3>, width: usize, variance: f64) -> Vec<DVec3> {
     let height = cells.len() / width;
     let rounds = (8.0 * variance).ceil();
@@ -91,9 +91,10 @@ fn map_channels(
 ) {
     let slope_of = |mean: f64, variance: f64| {
         let mean = mean.clamp(0.0, 1.0);
-        // Slope of the curve over the range of noise. Noise is the deviation of one sample, or an
-        // 8-bit step if that is greater. The slope over a quarter of the range is tried, too, and
-        // the steeper one counts, because a clipped curve is flat on one side.
+        // Mean slope of the curve over the range of light that noise spans. Noise is the standard
+        // deviation of one sample, or an 8-bit step if this is greater. A clipped curve is flat on
+        // one side, which reduces the mean slope. So the slope is also computed for a quarter of
+        // the noise, and the steeper one is used.
         let slope = |part: f64| {
             let by = variance.sqrt().max(STEP) * part;
             let (low, high) = ((mean - by).max(0.0), (mean + by).min(1.0));
@@ -120,10 +121,11 @@ fn map_channels(
 /// power. Rounding to bytes changes the estimate by less.
 const POWER: f64 = 0.005;
 
-/// Estimates the factor between observed and predicted light, after `function` is applied to both,
-/// from cells of one colour. The estimate is the median over all channels, refined by the channels
-/// with nearly this factor. It is 1 if the median is nearly 1, or if fewer than half of the
-/// channels agree with it. If all channels are full, it is the least factor that makes them full.
+/// Estimates the factor between observed and predicted light, from cells that should show one
+/// colour. First, `function` is applied to the light. The factor is the median of the ratios,
+/// refined by the mean of similar ratios. It is 1 if the median is close to 1, or if less than half
+/// of the ratios are similar. Channels that are full, i.e. clipped, are ignored. If all are full,
+/// the factor is the least one that makes them full.
 fn gain(observed: &[DVec3], mean: &[DVec3], variance: &[DVec3], function: &Tabulated) -> f64 {
     let flat = (0..mean.len()).filter(|&at| variance[at].max_element() < FLAT);
     let pairs = flat.flat_map(|at| [0, 1, 2].map(|i| [observed[at][i], mean[at][i]]));
@@ -226,7 +228,8 @@ impl<'a> Prediction<'a> {
                             let before = mean[at];
                             let sharp = (*own + more).clamp(DVec3::ZERO, DVec3::ONE);
                             mean[at] = sharp.map(srgb_to_linear);
-                            // Noise is sharpened, too.
+                            // Sharpening amplifies noise, so the variance is increased, by the
+                            // square of the change.
                             let by = mean[at] - before;
                             variance[at] += by * by;
                         }
@@ -234,7 +237,7 @@ impl<'a> Prediction<'a> {
                 }
                 Effect::Blur(width) => {
                     // A square of the width w has the variance w²/12 along each axis. A correct
-                    // pixel has the width 1.
+                    // pixel has the width 1, so the blur has the variance (w² − 1)/12.
                     let cell = f64::from(grid.factor);
                     let spread = (width * width - 1.0) / (12.0 * cell * cell);
                     let squares = variance.iter().zip(mean.iter());
@@ -256,7 +259,8 @@ impl<'a> Prediction<'a> {
                         is_within && is_near(observed[at].into(), light)
                     };
                     for at in (0..observed.len()).filter(|&at| is_part(at)) {
-                        // The border of the patch mixes with its neighbours.
+                        // The border of the patch mixes with the colours around it, so adjacent
+                        // cells are replaced, too.
                         for near in grid.around(at, 1) {
                             (mean[near], variance[near]) = (observed[near], DVec3::ZERO);
                         }
@@ -271,7 +275,8 @@ impl<'a> Prediction<'a> {
         self.moments.variance[at].max_element() < FLAT
     }
 
-    /// Returns how much light an 8-bit step is worth in a cell, for each channel.
+    /// Returns the difference in light between neighbouring 8-bit values, at the predicted mean of
+    /// a cell, for each channel.
     pub fn steps(&self, at: usize) -> DVec3 {
         self.moments.mean[at].map(|light| self.curve.step(light))
     }
@@ -279,13 +284,11 @@ impl<'a> Prediction<'a> {
     /// Returns the observed light of a cell minus the predicted light. Returns 0 in a cell without
     /// a pixel to compare.
     pub fn difference(&self, at: usize) -> DVec3 {
+        if self.observed[at].x.is_nan() {
+            return DVec3::ZERO;
+        }
         if !self.is_cut_off {
-            let seen = self.observed[at];
-            return if seen.x.is_nan() {
-                DVec3::ZERO
-            } else {
-                seen - self.moments.mean[at]
-            };
+            return self.observed[at] - self.moments.mean[at];
         }
         let all = self.of_cut_off.get_or_init(|| {
             let cells = 0..self.observed.len();
@@ -307,9 +310,6 @@ impl<'a> Prediction<'a> {
     /// the byte; in other cells, it loses half a step on average.
     fn difference_of_cut_off(&self, at: usize) -> DVec3 {
         let (seen, mean) = (self.observed[at], self.moments.mean[at]);
-        if seen.x.is_nan() {
-            return DVec3::ZERO;
-        }
         let is_flat = self.is_flat(at);
         DVec3::from([0, 1, 2].map(|i| {
             let by = (self.encoded(seen[i]) - self.encoded(mean[i])) / STEP;
@@ -323,8 +323,8 @@ impl<'a> Prediction<'a> {
         }))
     }
 
-    /// Returns the differences of all cells, channel by channel, in the light that viewers of the
-    /// file see.
+    /// Returns the differences between observed and predicted light of all cells, channel by
+    /// channel, in the light that viewers of the file see.
     pub fn differences(&self) -> Vec<f64> {
         let own = |at: usize| match self.curve {
             Curve::Correct => self.difference(at),
@@ -339,9 +339,9 @@ impl<'a> Prediction<'a> {
             .collect()
     }
 
-    /// Returns standard deviations of the differences of all cells, channel by channel. They are
-    /// what one sample per cell may cause. Each is the greatest in the cell's neighbourhood, so
-    /// that it also holds if edges are displaced by a cell.
+    /// Returns the standard deviations of the differences of all cells, channel by channel, as if
+    /// each cell had one sample. Each is the greatest standard deviation of a sample in the cell
+    /// and its neighbours, so that it also holds if edges are displaced by a cell.
     pub fn deviations(&self) -> Vec<f64> {
         let cells = 0..self.observed.len();
         let deviations = cells.flat_map(|at| {

@@ -1,7 +1,6 @@
 //! Renders a hypothesis about the program in the cells of a grid, before pixels are rearranged and
-//! light is changed. The result is exact, unless the grid is the coarsest one or the program traces
-//! rays in a wrong way that no other scene can express. In these cases, the faulty tracer takes
-//! samples.
+//! light is changed. The result is exact if the program traces the rays of its scene correctly. If
+//! it does not, or on the coarsest grid, the faulty tracer takes samples.
 
 use std::{cell::OnceCell, sync::Arc};
 
@@ -20,9 +19,9 @@ use crate::{
     scene::Scene,
 };
 
-/// Number of samples per cell if the program traces rays in a wrong way that no other scene can
-/// express. It is a Fibonacci number, because the samples form a Fibonacci lattice. More samples
-/// are less noisy, but take longer.
+/// Number of samples per cell if the program traces rays wrongly, which cannot be rendered exactly.
+/// It is a Fibonacci number, because the samples form a Fibonacci lattice. More samples are less
+/// noisy, but take longer.
 const SAMPLES: usize = 34;
 
 /// Fraction of a cell's area in which the faulty tracer typically overlooks another colour. The
@@ -41,9 +40,9 @@ pub struct Rendering {
     /// Means and variances if the scene is traced with the faults of the hypothesis; `None` if
     /// there are no faults, or on the coarsest grid.
     behaved: Option<Arc<Moments>>,
-    /// Means and variances of the hypothesis's scene, traced correctly, but estimated from as many
-    /// samples as `behaved`. Where both agree, the faults make no difference. `None` if they were
-    /// not computed.
+    /// Means and variances of the hypothesis's scene, traced correctly, but estimated from the same
+    /// number of samples as `behaved`. In a cell in which they equal `behaved`, the faults make no
+    /// difference. `None` if they were not computed.
     sampled: Option<Arc<Moments>>,
 }
 
@@ -68,7 +67,7 @@ impl Rendering {
             return Arc::clone(moments);
         }
         let index = |pixel| {
-            let (x, y) = layout.source(pixel, grid.size());
+            let (x, y) = layout.source(pixel, grid.size);
             self.part.index(x, y)
         };
         let order: Vec<usize> = grid.cells.iter().map(index).collect();
@@ -88,14 +87,16 @@ impl Candidate {
         };
         if self.is_drawn.contains(&false) {
             let mut is_drawn = self.is_drawn.iter();
-            Arc::make_mut(&mut scene.objects).retain(|_| is_drawn.next() == Some(&true));
+            scene
+                .objects_mut()
+                .retain(|_| is_drawn.next() == Some(&true));
         }
         scene
     }
 
     /// Renders the hypothesis in the cells of a grid: exactly, or with `samples` samples per cell.
-    /// Reuses the rendering of `known` that agrees with most of the picture. Returns `None` if it
-    /// is cancelled or exceeds the budget of work.
+    /// Where a rendering in `known` shows the same, it is copied instead. Returns `None` if it is
+    /// cancelled or exceeds the budget of work.
     pub fn render(
         &self,
         grid: &Grid,
@@ -103,7 +104,7 @@ impl Candidate {
         known: &[Arc<Rendering>],
         work: &Work,
     ) -> Option<Rendering> {
-        let part = self.layout.sources(grid.cells, grid.size());
+        let part = self.layout.sources(grid.cells, grid.size);
         let is_reusable = |one: &&Arc<Rendering>| {
             let behaves = one.candidate.behaviour == self.behaviour;
             one.part == part && (samples.is_none() || behaves)
@@ -118,8 +119,8 @@ impl Candidate {
         let scene = || scene.get_or_init(|| self.drawn(grid));
         let sampled = |behaviour: Behaviour, area: Area, samples: usize| {
             work.pay_for_samples(self.scene.objects.len(), samples, area)?;
-            // The scene has only the objects that are drawn, so the index of the faulty one counts
-            // only these.
+            // The scene lacks the objects that the program omits, so the index of the faulty object
+            // is converted to its index among the drawn ones.
             let drawn = |at: usize| self.is_drawn[..at].iter().filter(|is| **is).count();
             let hit = behaviour.hit.filter(|(at, _)| self.is_drawn[*at]);
             let behaviour = Behaviour {
@@ -171,13 +172,8 @@ impl Candidate {
     /// Returns the area in which the pictures of two hypotheses may differ, before pixels are
     /// rearranged. The rest of `part` is the same in both.
     fn changed(&self, other: &Self, grid: &Grid, part: Area) -> Area {
-        let nothing = Area {
-            width: 0,
-            height: 0,
-            ..part
-        };
         if self.traces_as(other) {
-            return nothing;
+            return Area::whole(0, 0);
         }
         let (one, two) = (&self.scene, &other.scene);
         // If the program shows objects in their places, a changed object makes a difference only
@@ -216,8 +212,9 @@ impl Candidate {
     }
 }
 
-/// Returns the means and variances of `part`. `known` has them, except in its area, for which
-/// `make` computes them. Without `known`, `make` computes all of them.
+/// Returns the means and variances of the cells of `part`. If `known` is given, they are copied
+/// from its first item, except in the area that is its second item. All cells that are not copied
+/// are computed by `make`.
 fn completed(
     known: Option<(&Arc<Moments>, Area)>,
     part: Area,
@@ -234,8 +231,9 @@ fn completed(
     }
 }
 
-/// Replaces exact means and variances by those that the faulty tracer sampled (`other`), in all
-/// cells in which samples of a correct tracer (`own`) differ from them.
+/// Replaces exact means and variances by sampled ones in the cells where the program's faults make
+/// a difference. `own` has the samples of a correct tracer, and `other` those of the faulty tracer.
+/// A cell is replaced by `other` if the two differ in it.
 fn replaced_where_they_differ(mut correct: Moments, own: &Moments, other: &Moments) -> Moments {
     for at in 0..other.mean.len() {
         let variance = other.variance[at];

@@ -19,19 +19,20 @@ const PIXELS_PER_BLOCK: f64 = 64.0;
 /// Errors of a picture that no sampling can explain, if a hypothesis about the program is correct.
 #[derive(Debug, Default)]
 pub struct Strays {
-    /// Indices of the pixels that should show one colour and show another one. They differ by more
-    /// than an edge explains that is moved by half a pixel.
+    /// Indices of the pixels that should show one colour and show another one. Edges that are
+    /// displaced by half a pixel cannot explain the difference.
     pub pixels: Vec<usize>,
     /// Sum of the squared differences of the pixels in `pixels`.
     square: f64,
-    /// The pixels that mix several colours: index, squared difference, and variance of one sample.
+    /// Pixels that mix several colours: index, squared difference beyond the one that rounding
+    /// explains, and variance of one sample.
     edges: Vec<(usize, f64, f64)>,
 }
 
 impl Strays {
-    /// Returns the sum of the squared differences that sampling cannot explain. In pixels that
-    /// should show one colour, the whole difference counts. In pixels that mix several colours,
-    /// only what exceeds the variance of one sample counts.
+    /// Returns the sum of the squared differences that sampling cannot explain. A pixel that should
+    /// show one colour contributes its whole squared difference. A pixel that mixes several colours
+    /// contributes its squared difference minus the variance of one sample.
     pub fn square(&self) -> f64 {
         let beyond = |(_, square, variance): &(usize, f64, f64)| square - variance;
         let beyond: f64 = self.edges.iter().map(beyond).sum();
@@ -41,12 +42,8 @@ impl Strays {
     /// Returns whether at most `missed` of the pixels that should show one colour are wrong, and
     /// the errors of pixels that mix several colours may be noise.
     pub fn are_no_more(&self, missed: usize) -> bool {
-        let are_few = self.pixels.len() <= missed;
-        let of_edges = Self {
-            edges: self.edges.clone(),
-            ..Self::default()
-        };
-        are_few && of_edges.are_empty(1, |_| Some(0)) == [true]
+        let sum = |(squares, expected), edge: &(_, f64, f64)| (squares + edge.1, expected + edge.2);
+        self.pixels.len() <= missed && is_noise(self.edges.iter().fold((0.0, 0.0), sum))
     }
 
     /// Returns for each group of pixels whether sampling may explain its errors. `group` returns
@@ -63,16 +60,17 @@ impl Strays {
                 (*squares, *expected) = (*squares + square, *expected + variance);
             }
         }
-        // Light is at most 1, so the squared error of a pixel, summed over three channels, is at
-        // most 3. Therefore its variance is at most three times its expected value.
-        let is_noise = |(squares, expected): (f64, f64)| {
-            squares - expected <= DEVIATIONS * libm::sqrt(3.0 * expected)
-        };
         let pairs = is_right.into_iter().zip(sums);
-        pairs
-            .map(|(is_right, sums)| is_right && is_noise(sums))
-            .collect()
+        pairs.map(|(is, sums)| is && is_noise(sums)).collect()
     }
+}
+
+/// Returns whether sampling may explain a sum of squared errors. The second number is the sum that
+/// is expected of sampling.
+fn is_noise((squares, expected): (f64, f64)) -> bool {
+    // Light is at most 1, so the squared error of a pixel, summed over three channels, never
+    // exceeds 3. Therefore its variance is at most three times its expected value.
+    squares - expected <= DEVIATIONS * libm::sqrt(3.0 * expected)
 }
 
 impl Prediction<'_> {
@@ -97,12 +95,13 @@ impl Prediction<'_> {
         strays
     }
 
-    /// Returns whether in some group of a JPEG's pixels, those that should show one colour are too
-    /// bright or too dark on average. `groups` has the group of each pixel. Coding changes single
-    /// pixels by much, but hardly their mean.
+    /// Returns whether the pixels of a group in a JPEG are too bright or too dark on average. Only
+    /// pixels that should show one colour are compared. `groups` has the group of each pixel. JPEG
+    /// coding may change single pixels a lot, but it hardly changes their mean.
     pub fn is_tinted(&self, groups: &[usize]) -> bool {
         let all = groups.iter().max().map_or(0, |most| most + 1);
-        // Sums of the differences and of 1, both divided by the variance.
+        // For each group, the sum of the differences divided by their variances, and the sum of the
+        // reciprocal variances.
         let mut sums = vec![[DVec3::ZERO; 2]; all];
         for (at, group) in groups.iter().enumerate() {
             if self.is_flat(at) && !self.observed[at].x.is_nan() {
@@ -120,9 +119,9 @@ impl Prediction<'_> {
     }
 
     /// Returns how much the light of a pixel may change if edges move by half a pixel, for each
-    /// channel. This is half the range of its neighbours' means, or the standard deviation of one
-    /// sample in a neighbour, if that is greater. Where two colours cover half of a pixel each,
-    /// this deviation is half of their difference.
+    /// channel. At an edge in a neighbour, this is half the difference of the two colours. So it is
+    /// half the range of the means of the pixel and its neighbours, or the greatest standard
+    /// deviation of one sample in them, if this is greater.
     fn reach(&self, at: usize) -> DVec3 {
         let [least, most] = range(&self.moments.mean, self.width, at, 1);
         let [_, variance] = range(&self.moments.variance, self.width, at, 1);

@@ -10,9 +10,10 @@ use crate::{
     area::Area, exact::Integrator, grading::hypotheses::Curve, scene::Scene, tracer::World,
 };
 
-/// Units of work (about 30 ns each) that are allowed for a picture, in addition to those for each
-/// pixel (`PIXEL`). By measurement, both together take about 3 s for 320 × 180 pixels, which is
-/// enough to find two mistakes in four objects, and 4 s for 1280 × 720.
+/// Units of work that are allowed for a picture, in addition to those for each pixel (`PIXEL`). A
+/// unit is about 30 ns. By measurement, a picture of 320 × 180 pixels takes at most about 3 s,
+/// which is enough to find two mistakes in four objects. A picture of 1280 × 720 pixels takes at
+/// most about 4 s.
 const PICTURE: f64 = 8e7;
 /// Units of work (about 30 ns each) that are allowed for each pixel of a picture. Large pictures
 /// take longer to compare.

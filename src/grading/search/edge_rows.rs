@@ -2,35 +2,34 @@
 //!
 //! In: a hypothesis about the program that is close to the picture. Out: the hypothesis, perhaps
 //! with one more mistake, if it explains the picture. The mistake may be a row of the table that is
-//! visible only at edges, or a wrong pixel width. A row predicts a change of the picture; the test
-//! measures on single pixels which fraction of the change is observed.
+//! visible only at edges, or a wrong pixel width. A row is tested on single pixels: the change of
+//! the picture that it predicts must be observed.
 
 use std::sync::Arc;
 
 use super::{
-    judge::{CELL_STEP, Judge, least},
+    judge::{Judge, least},
     plain_numbers::shortened,
 };
-use crate::grading::{
-    hypotheses::{Behaviour, Candidate, Mistake, MistakeRow, OBJECT_ROWS, ROWS, Shows},
-    scoring::Level,
+use crate::grading::hypotheses::{
+    Behaviour, Candidate, Mistake, MistakeRow, OBJECT_ROWS, ROWS, Shows,
 };
 
-/// Maximum number of rounds of fitting numbers to the middle grid. Few are enough, because a fit to
-/// a coarser grid comes before.
+/// Maximum number of rounds in which numbers are fitted to a grid of high resolution. A few are
+/// enough, because the numbers were fitted to a coarser grid before.
 pub const ROUNDS: usize = 4;
 
-/// Greatest deviation from 1 of the observed fraction of a predicted change. A mistake at edges
-/// predicts how the picture changes. It is named only if the whole change is observed, i.e. if the
-/// fraction is 1 ± 0.3. With a larger tolerance, mistakes with a similar effect would be confused.
+/// Tolerance of the observed fraction of a change. A mistake at edges predicts a change of the
+/// picture. The mistake is named only if the whole change is observed, i.e. if the fraction is 1 ±
+/// 0.3. With a larger tolerance, mistakes with a similar effect would be confused.
 const SHARE_TOLERANCE: f64 = 0.3;
-/// Least observed fraction of a predicted change, in standard deviations of this fraction. A
-/// mistake at edges predicts how the picture changes. It is named only if the observed fraction of
-/// this change is certainly not 0. At seven standard deviations, chance is negligible.
+/// Threshold of significance, in standard deviations. A mistake at edges predicts a change of the
+/// picture. The mistake is named only if the observed fraction of the change exceeds 0 by this many
+/// standard deviations, because then chance is negligible.
 const SURE: f64 = 7.0;
-/// Maximum fraction of the squared difference between a JPEG and its prediction that may be left
-/// after a mistake at edges is assumed. If more is left, the mistake is not named. With a larger
-/// value, mistakes would be named that explain only a part of the difference.
+/// Maximum ratio of two squared differences between a JPEG and its prediction: with a mistake at
+/// edges, and without it. If the ratio is greater, the mistake is not named, because it explains
+/// only a part of the difference.
 const LEFT_IN_CODED: f64 = 0.25;
 
 /// Identifiers of the mistakes that move samples by a few pixels at most.
@@ -40,9 +39,9 @@ const SHIFT_IDS: [&str; 2] = ["half_pixel", "window_one_less"];
 /// mistake encodes samples before it averages them.
 const CODED_ID: &str = "averaged_encoded";
 
-/// Maximum fraction of the squared difference beyond noise that may be left after another pixel
-/// width is assumed. If more is left, the width is not named. Otherwise a slight blur could be
-/// named that only hides the effect of another mistake.
+/// Maximum ratio of two squared differences between the picture and its prediction: with another
+/// pixel width, and with the correct one. Noise is subtracted first. If the ratio is greater, the
+/// width is not named, because a slight blur may hide the effect of another mistake.
 const LEFT_BY_FILTER: f64 = 0.5;
 
 /// Factors by which an estimated pixel width greater than 1 is multiplied. Of the products, the
@@ -55,9 +54,9 @@ const LEAST_WIDE: f64 = 1.1;
 /// A few values suffice, because edges determine a narrow width only roughly.
 const NARROW_WIDTHS: [f64; 3] = [0.25, 0.5, 0.7];
 
-/// Number n such that a picture counts as wrong in large parts if more than one in n pixels is
-/// wrong. The value 50 stands for 2 %. In such a picture, mistakes that are weakly visible
-/// everywhere are tried even if the wrong pixels do not lie at edges.
+/// Reciprocal of a fraction of a picture's pixels; 1/50 is 2 %. If more pixels are wrong, mistakes
+/// that are weakly visible everywhere are tried, even if the wrong pixels do not lie at edges. With
+/// a smaller number, such mistakes would be overlooked in more pictures.
 const MUCH_WRONG: usize = 50;
 
 /// Maximum difference between the estimated shift of all edges in the picture and the shift that a
@@ -69,36 +68,21 @@ const MAX_SHIFT_ERROR: f64 = 0.5;
 /// similar shift first. More would take longer, and explain the shift less well.
 const SHIFTS: usize = 4;
 
-/// Least observed fraction of a predicted change on the coarsest grid, in standard deviations of
-/// this fraction. A mistake that reaches it is tested on single pixels, even if a correct program
-/// explains the picture. The value is low, because the second test decides.
+/// Threshold of significance on the coarsest grid, in standard deviations. A mistake predicts a
+/// change of the picture. If the observed fraction of the change exceeds 0 by this much, the
+/// mistake is tested on single pixels. The value is low, because this second test decides.
 const HINTED: f64 = 3.0;
-/// Least observed fraction of a predicted change on the coarsest grid. A mistake that reaches it is
-/// tested on single pixels, even if a correct program explains the picture. The value is low,
-/// because the second test decides.
+/// Threshold of the observed fraction of a change on the coarsest grid. A mistake predicts a change
+/// of the picture. If a larger fraction of the change is observed, the mistake is tested on single
+/// pixels. The value is low, because this second test decides.
 const HINTED_SHARE: f64 = 0.3;
 
-/// Fits all numbers of a hypothesis's mistakes to a picture at one resolution. Returns `None` if
-/// there are no numbers, or if the budget of work is used up.
-pub fn refitted(
-    judge: &Judge,
-    candidate: &Candidate,
-    level: &Level,
-    rounds: [usize; 2],
-) -> Option<Candidate> {
-    let all: Vec<usize> = (0..candidate.numbers().len()).collect();
-    if all.is_empty() {
-        return None;
-    }
-    let (fitted, _) = judge.fit(candidate, &all, level, CELL_STEP, rounds)?;
-    Some(fitted)
-}
-
-/// Adds to a hypothesis what makes it explain the picture: nothing, a mistake at edges, or a wrong
-/// pixel width. Returns `None` if none of these does.
+/// Returns a hypothesis that explains the picture: `candidate` itself, or `candidate` with a
+/// mistake at edges or a wrong pixel width added. Returns `None` if none of these explains it.
 pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
     let edges = judge.central_crop();
-    // What is found so far is tested even if the budget of work is used up.
+    // The hypothesis is tested even if the budget of work is used up, because it may explain the
+    // picture.
     let (residual, null) = judge.work.without_limit(|| {
         let residual = judge.residual(candidate);
         residual.zip(judge.judged(candidate, edges))
@@ -118,8 +102,8 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
     let rows = ROWS.iter().filter(|row| match row.shows {
         Shows::InAreas => false,
         Shows::AtEdges if SHIFT_IDS.contains(&row.id) => false,
-        // The pictures of programs that move edges are only sampled, which is too inexact for a
-        // test at edges.
+        // If the program traces rays wrongly so that edges move, its picture is only estimated from
+        // samples. This is too inexact for a test at edges.
         Shows::AtEdges => {
             let may = may || candidate.keeps_light() && row.id == CODED_ID;
             may && residual.is_at_edges && candidate.behaviour.is_in_place()
@@ -208,13 +192,14 @@ fn fitted_with(judge: &Judge, with: Candidate) -> Option<Candidate> {
     if !judge.residual(&with)?.is_at_edges {
         return None;
     }
-    let fitted = refitted(judge, &with, judge.fitting(&with), [0, ROUNDS])?;
-    let short = shortened(judge, &fitted);
+    let (fitted, _) = judge.fit_all(&with, judge.fitting(&with), [0, ROUNDS])?;
+    let short = shortened(judge, &fitted).unwrap_or(fitted);
     judge.explains(&short).then_some(short)
 }
 
-/// Returns the mistakes that the coarsest grid hints at, although a correct program explains the
-/// picture. If most pixels are mixtures of colours, a mistake may look like noise.
+/// Returns the mistakes that the coarsest grid hints at. They are of interest even if a correct
+/// program seems to explain the picture: if most pixels mix several colours, the effect of a
+/// mistake may look like noise.
 fn hinted(judge: &Judge, candidate: &Candidate) -> Vec<Mistake> {
     let hinted = || {
         let tiny = judge.tiny(candidate)?;

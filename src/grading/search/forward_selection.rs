@@ -8,10 +8,9 @@
 use std::collections::BTreeSet;
 
 use super::{
-    edge_rows::{ROUNDS, explained_with, refitted, rows_in_areas},
+    edge_rows::{ROUNDS, explained_with, rows_in_areas},
     joint,
     judge::{Judge, Judged, least},
-    labels::labels,
     numeric_mistakes::{numeric_mistakes, slightly_wrong},
     patch::patch,
     plain_numbers::plain,
@@ -41,41 +40,42 @@ const MISTAKE_PENALTY: f64 = 1.05;
 /// numbers would be preferred to simpler mistakes; with a larger one, they would be missed.
 const NUMBER_PENALTY: f64 = 1.03;
 
-/// Maximum number of mistakes that are compared on an exact picture. Those with the least
-/// difference on the coarsest grid come first. Comparing all mistakes in this way would double the
-/// time in which a single mistake is found.
+/// Maximum number of mistakes for which an exact picture is rendered. They are selected by their
+/// difference from the picture on the coarsest grid, which is only sampled. Rendering exact
+/// pictures for all mistakes would double the time in which a single mistake is found.
 const EXACT_ROWS: usize = 32;
 
-/// Maximum number of combinations of mistakes that are examined because their mistakes may explain
-/// the picture only together. Those with the least difference from the picture come first. A larger
+/// Maximum number of sets that are examined because their mistakes may explain the picture only
+/// together. The sets with the least difference from the picture are examined first. A larger
 /// number takes longer.
 const JOINT_SETS: usize = 2;
 
-/// Ratio below which an extended set of mistakes is examined at once: its difference from the
-/// picture, divided by that of the set that it extends. If it explains the picture, the other kinds
-/// of mistakes need not be tried. With a larger ratio, more sets would be examined in vain.
+/// Threshold below which an extended set of mistakes is examined at once: the ratio of its
+/// difference from the picture to that of the set before the extension. If the extended set
+/// explains the picture, no other kinds of mistakes are tried. With a larger threshold, more sets
+/// would be examined in vain.
 const PROMISING: f64 = 0.5;
 
-/// Greatest fraction of a correct program's squared error that a hypothesis may leave to count as
-/// close to the picture. Errors that sampling can explain are ignored. Only close hypotheses are
-/// fitted completely, because this takes long.
+/// Maximum error of a hypothesis that is close to the picture, as a fraction of a correct program's
+/// squared error. Errors that sampling can explain are ignored. Only close hypotheses are fitted
+/// completely, because this takes long.
 const NEAR_RATIO: f64 = 0.1;
 
-/// Maximum ratio of the error that a hypothesis leaves to the least error that any hypothesis has
-/// left so far. If the ratio is larger, the numbers of the hypothesis are not fitted further. A
-/// mistake at edges, which may be added to it later, hardly reduces its error.
+/// Maximum ratio of a hypothesis's error to the least error of all hypotheses so far. If the ratio
+/// is larger, the numbers of the hypothesis are not fitted further, because it is unlikely to
+/// become the best. Adding a mistake at edges would hardly reduce its error.
 const WORSE: f64 = 4.0;
-/// Fraction of a correct program's squared error. Hypotheses that leave less count as equally close
-/// to the picture. Without this limit, a hypothesis that leaves no error at all would exclude all
-/// others.
+/// Error below which differences between hypotheses are ignored, as a fraction of a correct
+/// program's squared error. Without this limit, a hypothesis without any error would exclude all
+/// others from further fitting.
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// Maximum number of objects that are suspected to be wrong. Those with the largest error in and
 /// beside them come first. The work of a search grows with this number.
 const MAX_SUSPECTS: usize = 12;
 
-/// Fraction of the largest error at an object below which other objects are not suspected to be
-/// wrong. Smaller errors are mostly noise.
+/// Threshold below which an object is not suspected to be wrong: the ratio of the error in and
+/// beside it to that of the worst object. Smaller errors are mostly noise.
 const SUSPECT_RATIO: f64 = 0.03;
 
 /// Searches for the mistakes that explain a picture best: at most `most`, and in addition some that
@@ -91,7 +91,8 @@ pub fn run(judge: &Judge, most: usize) -> Result<Option<(Judged, bool)>, Cancell
         explained: None,
     };
     search.run(most);
-    // The budget of work may have run out before the numbers of the last set were fitted.
+    // If the budget of work ran out before the numbers of the nearest hypothesis were fitted, they
+    // are fitted now.
     if search.explained.is_none() && judge.work.is_cut() {
         let nearest = search.nearest.clone();
         judge
@@ -211,10 +212,10 @@ impl Search<'_> {
         }
     }
 
-    /// Returns whether a set of at most `size` mistakes explains the picture. A larger set does not
-    /// end the search: it may consist of a row of the table and a mistake at edges, while a single
-    /// wrong number explains the picture, too. Nor does a program that hits spheres wrongly: its
-    /// picture is only estimated by samples, and may agree by chance.
+    /// Returns whether the picture is explained by at most `size` mistakes, so that the search can
+    /// end. A larger set does not end it, because a single wrong number may explain the picture,
+    /// too. A program that intersects spheres wrongly does not end it either, because its picture
+    /// is only sampled, and may agree by chance.
     fn is_explained_by(&self, size: usize) -> bool {
         let explained = self.explained.as_ref();
         explained.is_some_and(|(_, explained)| {
@@ -222,9 +223,9 @@ impl Search<'_> {
         })
     }
 
-    /// Returns whether a hypothesis was found that explains the picture with fewer parameters, or
-    /// with as many and at no greater cost. If that hits spheres wrongly, mistakes are counted
-    /// instead of parameters.
+    /// Returns whether a known hypothesis explains the picture with fewer parameters, or with as
+    /// many and at no greater cost. If the known hypothesis intersects spheres wrongly, mistakes
+    /// are counted instead of parameters.
     fn has_better(&self, candidate: &Candidate, cost: f64) -> bool {
         let explained = self.explained.as_ref();
         explained.is_some_and(|(least, explained)| {
@@ -239,7 +240,7 @@ impl Search<'_> {
         })
     }
 
-    /// Fits a hypothesis's numbers, and judges it on the middle grid. Remembers it if it has the
+    /// Fits a hypothesis's numbers, and judges it on the grid `middle`. Remembers it if it has the
     /// least cost so far, or explains the picture. Returns `None` if a better hypothesis explains
     /// the picture already, or if the budget of work is used up.
     fn examine(&mut self, candidate: &Candidate) -> Option<Judged> {
@@ -248,16 +249,16 @@ impl Search<'_> {
             return None;
         }
         self.examined.push(candidate.clone());
-        let fitted = refitted(judge, candidate, &judge.coarse, [2, 1]);
-        let mut judged = judge.judged(fitted.as_ref().unwrap_or(candidate), &judge.middle)?;
+        let fitted = judge.fit_all(candidate, &judge.coarse, [2, 1]);
+        let fitted = fitted.map_or_else(|| candidate.clone(), |(fitted, _)| fitted);
+        let mut judged = judge.judged(&fitted, &judge.middle)?;
         // A hypothesis far from the picture, or much farther than another, is not fitted further.
         let left = left(judge, judged.candidate()).unwrap_or(f64::INFINITY);
         self.least_left = self.least_left.min(left);
         let most = NEAR_RATIO.min(f64::max(WORSE * self.least_left, NEGLIGIBLE));
         if candidate.mistakes.is_empty() || left <= most {
             let level = judge.fitting(judged.candidate());
-            let fitted = refitted(judge, judged.candidate(), level, [0, ROUNDS]);
-            if let Some(fitted) = fitted {
+            if let Some((fitted, _)) = judge.fit_all(judged.candidate(), level, [0, ROUNDS]) {
                 judged = judge.judged(&fitted, &judge.middle)?;
             }
             // The hypothesis cannot become better than the one that explains the picture already.
@@ -265,7 +266,7 @@ impl Search<'_> {
                 return Some(judged);
             }
             // Slightly wrong numbers leave errors at edges, which a mistake at edges would seem to
-            // explain.
+            // explain. So the numbers are corrected before mistakes at edges are tried.
             let has_numbers = judged.candidate().numeric().next().is_some();
             let residual = || judge.residual(judged.candidate());
             if has_numbers && residual().is_some_and(|residual| residual.is_at_edges) {
@@ -311,8 +312,8 @@ fn is_near(judge: &Judge, candidate: &Candidate) -> bool {
     candidate.mistakes.is_empty() || left(judge, candidate).is_some_and(|left| left <= NEAR_RATIO)
 }
 
-/// Returns the fraction of a correct program's squared error that a hypothesis leaves. Only errors
-/// that sampling cannot explain count. Returns `None` if the budget of work is used up.
+/// Returns the squared error that a hypothesis leaves, as a fraction of a correct program's. Errors
+/// that sampling can explain are ignored. Returns `None` if the budget of work is used up.
 fn left(judge: &Judge, candidate: &Candidate) -> Option<f64> {
     let square = |candidate: &Candidate| {
         let predicted = judge.predicted(candidate, &judge.middle)?;
@@ -348,9 +349,10 @@ fn fewest(judge: &Judge, all: &Candidate) -> Candidate {
         let Some(fewer) = without(&fewest, left_out) else {
             continue;
         };
-        // The removed mistake may have compensated for wrong numbers, or for a mistake at edges.
+        // The removed mistake may have compensated for wrong numbers, so the numbers are fitted
+        // again. It may also have hidden a mistake at edges, so mistakes at edges are tried again.
         let fitted = || {
-            let fitted = refitted(judge, &fewer, judge.fitting(&fewer), [0, ROUNDS])?;
+            let (fitted, _) = judge.fit_all(&fewer, judge.fitting(&fewer), [0, ROUNDS])?;
             if !is_near(judge, &fitted) {
                 return None;
             }
@@ -477,11 +479,11 @@ fn penalised(difference: f64, candidate: &Candidate) -> f64 {
 /// Returns the indices of the objects that may be wrong, the one with the largest error first.
 fn suspects(judge: &Judge, from: &Judged) -> Vec<usize> {
     let grid = &judge.middle.grid;
-    let labels = labels(judge, from.candidate(), from.candidate().layout, grid);
+    let labels = judge.labels(from.candidate(), from.candidate().layout, grid);
     let mut wrong = vec![0.0; judge.scene.objects.len()];
     for (at, off) in from.score.chi_squares.iter().enumerate() {
         // An object that is larger than in the hypothesis's scene causes errors beside the cells in
-        // which the hypothesis shows it.
+        // which the hypothesis shows it. So an error is attributed to all objects near the cell.
         let near: BTreeSet<usize> = grid.around(at, 2).filter_map(|at| labels[at]).collect();
         near.into_iter()
             .for_each(|object| wrong[object] += libm::log1p(*off));

@@ -23,37 +23,33 @@ const BEST: usize = 8;
 /// took most of the time of judging a wrong picture.
 const CORRELATED: usize = 32;
 
-/// Ratio to which each further mistake has to reduce the difference from the picture, at least. The
-/// value 0.95 rejects mistakes that explain less than 5 % of it.
+/// Maximum ratio of the differences from the picture with and without a further mistake. The value
+/// 0.95 rejects mistakes that explain less than 5 % of the difference.
 const ROW_RATIO: f64 = 0.95;
 
-/// Returns the absolute value of the correlation between observed and predicted light. The light of
-/// a cell is the sum of its channels. Effects on light hardly change the correlation; even an
-/// inversion changes only its sign.
+/// Returns how strongly observed and predicted light are correlated, from 0 to 1. The light of a
+/// cell is the sum of its channels. Effects on light hardly change the correlation. An inversion
+/// changes only its sign, so the absolute value is taken.
 fn correlation(prediction: &Prediction) -> f64 {
-    let (mut count, mut sums, mut products) = (0.0, [0.0; 2], [0.0; 3]);
+    let mut sums = [0.0; 6];
     for (seen, mean) in prediction.observed.iter().zip(&prediction.moments.mean) {
         let [a, b] = [seen, mean].map(|light| light.element_sum());
         if !a.is_nan() {
-            count += 1.0;
-            sums = [sums[0] + a, sums[1] + b];
-            products = [
-                products[0] + a * a,
-                products[1] + a * b,
-                products[2] + b * b,
-            ];
+            let terms = [1.0, a, b, a * a, a * b, b * b];
+            sums = std::array::from_fn(|i| sums[i] + terms[i]);
         }
     }
-    let [aa, ab, bb] = [(0, 0, 0), (1, 0, 1), (2, 1, 1)]
-        .map(|(at, i, j)| products[at] - sums[i] * sums[j] / f64::max(count, 1.0));
-    ab.abs() / (aa * bb).sqrt().max(1e-12)
+    let [n, a, b, aa, ab, bb] = sums;
+    let covariance = |product: f64, one: f64, other: f64| product - one * other / n.max(1.0);
+    let variances = covariance(aa, a, a) * covariance(bb, b, b);
+    covariance(ab, a, b).abs() / variances.sqrt().max(1e-12)
 }
 
 /// Returns combinations of several mistakes with small differences from the picture on the coarsest
 /// grid. Each comes with its difference.
 pub fn joint_rows(judge: &Judge, right: &Candidate, tiny: &Level) -> Vec<(f64, Candidate)> {
     let rows = ROWS.iter();
-    // JPEG coding hides weak mistakes.
+    // JPEG coding hides weak mistakes, so they are not tried in a JPEG.
     let is_coded = judge.fine.jpeg.is_some();
     let rows = rows.filter(|row| match row.shows {
         Shows::InAreas => true,

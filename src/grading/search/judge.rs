@@ -11,10 +11,11 @@ use crate::{
     area::Area,
     film::{Film, Jpeg},
     grading::{
-        hypotheses::{Candidate, Effect, Mistake},
+        hypotheses::{Candidate, Effect, Layout, Mistake},
         scoring::{Displacement, Grid, Level, Prediction, Rendering, Score, Work, work},
     },
     scene::Scene,
+    tracer::World,
 };
 
 /// Number of cells along the longer side of the coarsest grid, on which mistakes are selected. A
@@ -24,8 +25,8 @@ const TINY: u32 = 32;
 /// grid takes longer. A coarser one determines the numbers less well.
 const COARSE: u32 = 48;
 /// Number of cells along the longer side of the grid on which sets of mistakes are judged. A finer
-/// grid takes longer. A coarser one is enough for most mistakes, because single pixels decide in
-/// the end.
+/// grid takes longer. A coarser one distinguishes similar mistakes less well, although single
+/// pixels decide in the end.
 const MIDDLE: u32 = 96;
 
 /// Change of the picture, in cells, by which a number is varied to find its derivative. A smaller
@@ -53,9 +54,9 @@ pub struct Judge<'a> {
     pub work: Work<'a>,
     /// Mistakes of each of the last few hypotheses, and what the hypothesis left unexplained.
     pub residuals: RefCell<VecDeque<(Vec<Mistake>, Residual)>>,
-    /// Squared difference between the picture and that of a correct program, at the resolution
-    /// `middle`. Counts only what the noise of sampling cannot explain. Computed on demand; what
-    /// hypotheses leave unexplained is measured as a fraction of it.
+    /// Squared difference between the picture and that of a correct program, on the grid `middle`.
+    /// Errors that sampling can explain are ignored. The errors of hypotheses are divided by it.
+    /// Computed on demand.
     pub square_of_correct: OnceCell<f64>,
 }
 
@@ -64,8 +65,9 @@ pub struct Judge<'a> {
 pub struct Residual {
     /// Number of pixels that should show one colour and show another one.
     pub strays: usize,
-    /// Whether areas of one colour are right, and errors in all other pixels look like noise. In
-    /// the areas, a few wrong pixels are allowed if samples may have missed them.
+    /// Whether areas of one colour are right, and errors in all other pixels look like noise. If
+    /// the prediction was sampled, a few pixels in the areas may be wrong, because samples may have
+    /// missed a small detail.
     pub are_areas_right: bool,
     /// Whether almost all wrong pixels lie near edges.
     pub is_at_edges: bool,
@@ -118,8 +120,7 @@ impl<'a> Judge<'a> {
         let part = exact.part;
         let level = |area: Area, longest, samples| {
             let grid = Grid::new(&scene.image, area, longest);
-            let corner = [area.x - part.x, area.y - part.y];
-            Level::new(grid, film, corner, samples, jpeg)
+            Level::new(grid, film, part, samples, jpeg)
         };
         let judge = Self {
             scene,
@@ -171,8 +172,9 @@ impl<'a> Judge<'a> {
     }
 
     /// Returns the coarsest resolution of the picture, for comparisons with variants of a
-    /// hypothesis. If the hypothesis can be rendered exactly, the error of sampling it is added to
-    /// the observed light. All variants are sampled in the same way, so the error cancels.
+    /// hypothesis. All variants are sampled in the same way, so they have almost the same sampling
+    /// error. If the hypothesis can be rendered exactly, this error is computed and added to the
+    /// observed light, so that it cancels in comparisons.
     pub fn tiny(&self, candidate: &Candidate) -> Option<Level<'a>> {
         let level = &self.tiny;
         let sampled = level.render(candidate, &self.work)?;
@@ -210,6 +212,25 @@ impl<'a> Judge<'a> {
         Some((absolute(&differences), candidate))
     }
 
+    /// Returns for each cell of a grid the index of the object in its middle, or `None` for the
+    /// background. It is the object that a program shows there if it renders the hypothesis's scene
+    /// correctly and then arranges pixels by `layout`. If it is cancelled, all cells are `None`.
+    pub fn labels(&self, candidate: &Candidate, layout: Layout, grid: &Grid) -> Vec<Option<usize>> {
+        let scene = candidate.drawn_correctly().drawn(grid);
+        let Ok(world) = World::new_unless(&scene, self.work.cancel) else {
+            return vec![None; grid.count()];
+        };
+        let objects = 0..candidate.is_drawn.len();
+        self.work
+            .spend(work::of_exact(0, objects.len(), grid.count()));
+        let drawn: Vec<usize> = objects.filter(|&i| candidate.is_drawn[i]).collect();
+        let label = |cell| {
+            let (x, y) = layout.source(cell, grid.size);
+            world.object_at(x, y).map(|object| drawn[object])
+        };
+        grid.cells.iter().map(label).collect()
+    }
+
     /// Computes the score and the cost of a hypothesis at one resolution.
     pub fn judged(&self, candidate: &Candidate, level: &Level) -> Option<Judged> {
         let rendering = level.render(candidate, &self.work)?;
@@ -222,10 +243,38 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// Fits those numbers of a hypothesis's mistakes that have the indices `free`. To find
-    /// derivatives, each number is varied so that the picture moves by about `cells` cells.
-    /// `rounds` has the maximum number of rounds by least squares, and that of rounds by a robust
-    /// loss.
+    /// Fits all numbers of a hypothesis's mistakes. Returns `None` if it has no numbers, or if the
+    /// budget of work is used up.
+    pub fn fit_all(
+        &self,
+        candidate: &Candidate,
+        level: &Level,
+        rounds: [usize; 2],
+    ) -> Option<(Candidate, Fitted)> {
+        let all = Vec::from_iter(0..candidate.numbers().len());
+        (!all.is_empty()).then_some(())?;
+        self.fit(candidate, &all, level, CELL_STEP, rounds)
+    }
+
+    /// Fits the numbers of the mistake that `start` has in addition to those of `from`. Returns the
+    /// remaining difference and the fitted hypothesis.
+    pub fn fit_last(
+        &self,
+        from: &Candidate,
+        start: &Candidate,
+        level: &Level,
+        cells: f64,
+        rounds: [usize; 2],
+    ) -> Option<(f64, Candidate)> {
+        let free = Vec::from_iter(from.numbers().len()..start.numbers().len());
+        let (fitted, found) = self.fit(start, &free, level, cells, rounds)?;
+        Some((found.left, fitted))
+    }
+
+    /// Fits the numbers at the indices `free` among all numbers of a hypothesis's mistakes. To find
+    /// derivatives, each number is varied so that the picture moves by about `cells` cells. The
+    /// first of `rounds` is the maximum number of rounds of least squares. The second is the
+    /// maximum number of rounds of minimising a robust loss.
     pub fn fit(
         &self,
         candidate: &Candidate,
@@ -252,11 +301,12 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// Returns the cost of `fitted` parameters. Each costs half the logarithm of the number of cells.
-/// The cells of the whole picture count even if only a part is judged, because almost anything
-/// could be fitted to a few pixels.
+/// Returns the price of `fitted` parameters, which is part of a hypothesis's cost. A parameter has
+/// the price of half the logarithm of the number of cells. Even if only a part of the picture is
+/// judged, the number is that of the whole picture, because almost anything could be fitted to a
+/// few pixels.
 pub fn price(level: &Level, fitted: usize) -> f64 {
-    let [width, height] = level.grid.size().map(f64::from);
+    let [width, height] = level.grid.size.map(f64::from);
     0.5 * fitted as f64 * libm::log(width * height)
 }
 

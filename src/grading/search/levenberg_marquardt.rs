@@ -3,8 +3,9 @@
 //! The method is that of Levenberg and Marquardt (Marquardt, An algorithm for least-squares
 //! estimation of nonlinear parameters, 1963). Weights turn squares into absolute values
 //! (Schlossmacher, 1973), so that errors that the model cannot explain do not distort the fit.
-//! Derivatives are found by varying each number once. Each move of the numbers then updates them
-//! (Broyden, A class of methods for solving nonlinear simultaneous equations, 1965).
+//! Derivatives are first found by varying each number. After each change of the numbers, the
+//! derivatives are updated (Broyden, A class of methods for solving nonlinear simultaneous
+//! equations, 1965).
 
 use crate::grading::scoring::solve;
 
@@ -19,8 +20,9 @@ pub struct Fitted {
     pub numbers: Vec<f64>,
     /// Sum of the absolute differences that remain.
     pub left: f64,
-    /// Standard deviation of each number, if the picture's differences have the standard deviations
-    /// that [`fit`] was given. It is meaningful only after a round with Huber's loss.
+    /// Standard deviation of each number, computed from the standard deviations of the picture's
+    /// differences that [`fit`] was given. It is meaningful only after a round that minimises
+    /// Huber's loss.
     pub errors: Vec<f64>,
 }
 
@@ -49,13 +51,15 @@ impl Loss {
     }
 }
 
-/// Fits numbers to a picture. `steps` are the changes of the numbers by which derivatives are
-/// found. `trial` returns the differences of a model from the picture, given the model's numbers.
-/// It returns `None` for impossible numbers, and if the budget of work is used up.
+/// Fits numbers to a picture. To find derivatives, each number is changed by its entry in `steps`.
+/// `trial` returns the differences of a model from the picture, given the model's numbers. It
+/// returns `None` for impossible numbers, and if the budget of work is used up.
 ///
-/// First, squared differences are minimised, because they have a single minimum. Then Huber's loss
-/// is minimised, in units of the standard deviations, so that errors that no numbers explain do not
-/// distort the fit. `rounds` has the maximum number of rounds of each of the two.
+/// First, the sum of squared differences is minimised, because it is less likely to have several
+/// minima. Then Huber's loss is minimised, in units of the standard deviations, so that errors that
+/// no numbers explain do not distort the fit. `rounds` has two maximum numbers of rounds: for the
+/// squared differences, and for Huber's loss. Returns `None` if `trial` does for the numbers
+/// `start`.
 pub fn fit(
     start: Vec<f64>,
     steps: &[f64],
@@ -105,8 +109,8 @@ pub fn fit(
             }
             let gradient: Vec<f64> = slopes.iter().map(|slope| -product(slope, &now)).collect();
             let (mut has_improved, mut is_far) = (false, None);
-            // Updated derivatives are inexact. If a move fails with them, they are computed anew
-            // before the damping grows.
+            // Updated derivatives are inexact, so they are computed again after one failed attempt.
+            // New derivatives are kept for up to four attempts, with growing damping.
             let attempts = if are_new { 4 } else { 1 };
             for _ in 0..attempts {
                 let mut damped = normal.clone();

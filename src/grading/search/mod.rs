@@ -8,20 +8,16 @@
 //! three kinds of mistakes: rows of the table, alone or in combinations that explain something only
 //! together (`joint`); wrong numbers of the scene (`numeric_mistakes`); and an extra `patch`.
 //! Numbers are fitted by `levenberg_marquardt`, and simplified by `plain_numbers`. `edge_rows` adds
-//! mistakes that are visible only at edges. `labels` finds which object a cell shows.
+//! mistakes that are visible only at edges.
 
 mod edge_rows;
 pub mod forward_selection;
 mod joint;
 mod judge;
-mod labels;
 mod levenberg_marquardt;
 mod numeric_mistakes;
 mod patch;
 mod plain_numbers;
 mod residual;
 
-pub use self::{
-    judge::{Judge, Judged},
-    labels::labels,
-};
+pub use self::judge::{Judge, Judged};

@@ -22,6 +22,10 @@ const STARTS: usize = 2;
 /// value come first. A larger number takes longer.
 const STARTED: usize = 12;
 
+/// Factors by which slips of the hand multiply a number: a wrong sign, a double, a half, and a
+/// decimal point that is forgotten or moved.
+pub const SLIPS: [f64; 5] = [-1.0, 2.0, 0.5, 10.0, 0.1];
+
 /// Fits the fields of the scene that may be wrong to the coarsest grid. Returns hypotheses, i.e.
 /// sets of mistakes, with their differences from the picture on this grid.
 pub fn numeric_mistakes(
@@ -60,37 +64,34 @@ pub fn numeric_mistakes(
             if parameter.is_color() && candidate.effects.is_empty() {
                 return Some((left, start));
             }
-            let free = candidate.numbers().len()..start.numbers().len();
-            let (candidate, fitted) =
-                judge.fit(&start, &Vec::from_iter(free), tiny, 0.5, [4, 0])?;
-            Some((fitted.left, candidate))
+            judge.fit_last(candidate, &start, tiny, 0.5, [4, 0])
         };
         least(tried.into_iter().filter_map(fit), 1).pop()
     });
     fitted.collect()
 }
 
-/// Number of fields of the scene that are fitted completely on the coarse grid, starting from the
-/// scene's own numbers. All fields are fitted for one round, and those with the least difference
-/// from the picture come first. A larger number takes longer.
+/// Number of fields of the scene that are fitted completely, starting from their present numbers,
+/// on a grid of low resolution. All fields are fitted for one round. The fields with the least
+/// remaining difference from the picture are selected. A larger number takes longer.
 const NEAR_OWN: usize = 3;
 
-/// Fits each field of the camera and of checkerboards that may be wrong to the coarse grid,
-/// starting from its present numbers. Returns the few best hypotheses that are closer to the
-/// picture than `candidate`.
+/// Fits each field of the camera and of checkerboards that may be wrong, except colours, starting
+/// from its present numbers. Returns the few best hypotheses that are closer to the picture than
+/// `candidate`.
 ///
-/// This finds numbers that are slightly wrong if most of the picture is a checkerboard with small
-/// squares. The samples of the coarsest grid cannot find them, because any move of such a board
-/// changes what the samples see.
+/// This finds slightly wrong numbers if a checkerboard with small squares fills most of the
+/// picture. The few samples of the coarsest grid cannot find them, because even a small movement of
+/// such a board changes the colours of most samples. So the grid `coarse` is used, which is
+/// rendered exactly.
 pub fn slightly_wrong(judge: &Judge, candidate: &Candidate, suspects: &[usize]) -> Vec<Candidate> {
     let level = &judge.coarse;
     let Some((difference, _)) = judge.with_difference(candidate.clone(), level) else {
         return Vec::new();
     };
     let fit = |start: &Candidate, rounds: [usize; 2]| {
-        let free = Vec::from_iter(candidate.numbers().len()..start.numbers().len());
-        let (fitted, found) = judge.fit(start, &free, level, CELL_STEP, rounds)?;
-        (found.left < difference).then_some((found.left, fitted))
+        let found = judge.fit_last(candidate, start, level, CELL_STEP, rounds);
+        found.filter(|found| found.0 < difference)
     };
     let mut all = suspected(candidate, suspects);
     all.retain(|parameter| match parameter.owner {
@@ -135,9 +136,9 @@ fn suspected(candidate: &Candidate, suspects: &[usize]) -> Vec<Parameter> {
     all
 }
 
-/// Returns a colour of the picture for each of the given colours: the median over the pixels in
-/// which only the given colour is predicted. `numbers` has the bytes of the given colours, three
-/// for each.
+/// Returns for each given colour the one that the picture shows instead: the median over the pixels
+/// in which only the given colour is predicted. Keeps the given colour if there are no such pixels.
+/// `numbers` has three channels for each given colour, from 0 to 255.
 fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
     let color = |own: &[f64; 3]| {
         let light = DVec3::from(Color { srgb: *own }.to_linear());
@@ -161,8 +162,9 @@ fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
     colors.iter().flat_map(color).collect()
 }
 
-/// Returns starting values for the depth of a clipping plane: the plane's own depth, and depths
-/// around that of the point that the camera looks at. Each of these is 1.2 times the one before.
+/// Returns starting values for the depth of the near or far plane: its present depth, and depths
+/// around the distance of the point that the camera looks at. If the camera has no such point, it
+/// is the distance of the origin from the eye. Each depth is 1.2 times the one before.
 fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
     const FROM: i32 = -12;
     const TO: i32 = 24;
@@ -176,7 +178,7 @@ fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
 }
 
 /// Returns starting values for a field's numbers: its own numbers; other numbers near them; and the
-/// results of slips, such as a wrong sign, two exchanged numbers, a double or a half.
+/// results of slips of the hand, such as a wrong sign or two exchanged numbers.
 fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     let mut starts = vec![numbers.to_vec()];
     // A single number takes few trials, so a wider range is tried.
@@ -204,10 +206,10 @@ fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>
     for i in 0..numbers.len() {
         // A slip changes a single field, not `eye` and `lookat` together.
         if parameter.fields.len() == 1 {
-            with(&|other| other[i] = -other[i]);
+            for by in SLIPS {
+                with(&|other| other[i] *= by);
+            }
             with(&|other| other[i] = 0.0);
-            with(&|other| other[i] *= 2.0);
-            with(&|other| other[i] *= 0.5);
             with(&|other| other.swap(i, (i + 1) % numbers.len()));
         }
         for by in 1..=far {

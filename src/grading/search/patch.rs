@@ -16,7 +16,8 @@ const FILLED: f64 = 0.25;
 const MOST: f64 = 0.2;
 
 /// Finds the largest connected area of one colour that a hypothesis does not explain. Returns
-/// `None` if there is none that may be a patch, or if the hypothesis has a patch already.
+/// `None` if the area is too small, too thin or too large, or has a colour of the scene. Also
+/// returns `None` if the hypothesis has a patch already.
 pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
     let mut others = from.candidate().mistakes.iter();
     if others.any(|one| matches!(one, Mistake::Patch(..))) {
@@ -51,7 +52,8 @@ pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
         }
     }
     let light = seen[*largest.first()?].to_array();
-    // An area with a colour of the scene is more likely an object in a wrong place.
+    // An area with a colour of the scene is more likely an object in a wrong place, so it is no
+    // patch.
     let scene = &from.candidate().scene;
     let objects = scene.objects.iter();
     let colors = objects.flat_map(|object| object.shape.colors());

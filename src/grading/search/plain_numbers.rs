@@ -1,19 +1,23 @@
-//! Simplifies fitted numbers. They become the scene's own numbers if these explain the picture as
-//! well, and otherwise get fewer digits.
+//! Simplifies fitted numbers. They become the scene's own numbers, or results of a slip of the
+//! hand, if these explain the picture as well, and otherwise get fewer digits.
 //!
 //! Somebody who mistypes a scene usually changes one number of a vector, and writes a short number.
 //! So the fit with the most numbers of the scene is chosen among equally good ones, and then the
 //! one with the fewest digits.
 
-use super::judge::{CELL_STEP, Judge, price};
+use super::{
+    judge::{CELL_STEP, Judge, price},
+    numeric_mistakes::SLIPS,
+};
 use crate::{
     grading::hypotheses::{Candidate, Mistake, Parameter},
     numbers::rounded,
     scene::Scene,
 };
 
-/// Greatest displacement of an edge, in pixels, that rounding a number may cause in the first
-/// round. With a larger value, shorter numbers are tried first, which are more often rejected.
+/// Displacement of an edge, in pixels, that rounding a number may cause in the first round of
+/// rounding. Each further round allows less, so numbers become longer. With a larger value, shorter
+/// numbers are tried first, but more of them are rejected.
 const TENTH: f64 = 0.1;
 /// Maximum number of rounds of rounding. Each round allows a quarter of the displacement of the
 /// round before. The fifth allows 0.0004 pixels, so more rounds would hardly change a picture.
@@ -31,7 +35,8 @@ const ROUNDS: usize = 8;
 pub fn plain(judge: &Judge, candidate: &Candidate) -> Candidate {
     let found = judge.judged(candidate, judge.fitting(candidate));
     let own = found.map(|found| with_own(judge, candidate, found.cost));
-    shortened(judge, own.as_ref().unwrap_or(candidate))
+    let own = own.unwrap_or_else(|| candidate.clone());
+    shortened(judge, &own).unwrap_or(own)
 }
 
 /// Replaces fitted numbers by the scene's own as long as the picture is explained as well.
@@ -47,13 +52,17 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
             if !judge.work.may_go_on() {
                 return candidate.clone();
             }
-            // A number that is not fitted has no cost.
+            // A number that is not fitted has no price, so the cost is reduced by the prices of the
+            // numbers that become the scene's own.
             let gain = price(level, numbers.len() - free.len());
             let free: Vec<usize> = free.into_iter().map(|i| first + i).collect();
             let judged = || {
                 let mut mistakes = candidate.mistakes.clone();
                 mistakes[at] = Mistake::Numbers(parameter, numbers);
                 let start = Candidate::of(scene, mistakes)?;
+                if free.is_empty() {
+                    return judge.judged(&start, level);
+                }
                 let (fitted, _) = judge.fit(&start, &free, level, CELL_STEP, [0, ROUNDS])?;
                 judge.judged(&fitted, level)
             };
@@ -72,17 +81,18 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
     candidate.clone()
 }
 
-/// Returns variants of wrong numbers in which more numbers are the scene's own. The others are
-/// free, i.e. may be fitted again; variants with few free numbers come first. Of a vector, one or
-/// two coordinates are free. Of `eye` and `lookat` together, one point is free. Each variant comes
-/// with the indices of its free numbers.
+/// Returns variants of a field's wrong numbers in which more numbers are the scene's own. The other
+/// numbers are free, i.e. may be fitted again. Of a vector, one or two coordinates are free. Of
+/// `eye` and `lookat` together, one point is free. Variants with few free numbers come first. Each
+/// variant comes with the indices of its free numbers. Before all others come variants in which a
+/// slip of the hand changes one number of the scene, and none is free.
 fn plainer(
     scene: &Scene,
     parameter: &Parameter,
     numbers: &[f64],
 ) -> Vec<(Parameter, Vec<f64>, Vec<usize>)> {
     let own = parameter.numbers(scene);
-    match (&parameter.fields[..], own.len()) {
+    let fewer = match (&parameter.fields[..], own.len()) {
         // A picture does not determine the length of a direction, so the direction is scaled until
         // one coordinate is the scene's own.
         (["normal" | "direction"], _) => {
@@ -116,25 +126,52 @@ fn plainer(
             fewer.map(with).collect()
         }
         _ => Vec::new(),
-    }
+    };
+    [slips(scene, parameter, numbers), fewer].concat()
+}
+
+/// Returns the scene's numbers with a slip of the hand in one of them, if that moves the picture
+/// by less than a pixel from where `numbers` show it.
+fn slips(
+    scene: &Scene,
+    parameter: &Parameter,
+    numbers: &[f64],
+) -> Vec<(Parameter, Vec<f64>, Vec<usize>)> {
+    let own = parameter.numbers(scene);
+    let steps = parameter
+        .put(scene, numbers)
+        .map(|wrong| parameter.steps(&wrong, 1.0));
+    let Some(steps) = steps.filter(|_| parameter.fields.len() == 1 && !parameter.is_color()) else {
+        return Vec::new();
+    };
+    let changed = (0..own.len()).flat_map(|i| {
+        SLIPS.map(|by| {
+            let mut changed = own.clone();
+            changed[i] *= by;
+            changed
+        })
+    });
+    let is_near = |changed: &Vec<f64>| {
+        let off = changed.iter().zip(numbers).zip(&steps);
+        changed != numbers
+            && off
+                .into_iter()
+                .all(|((one, other), step)| (one - other).abs() < step.abs())
+    };
+    changed
+        .filter(is_near)
+        .map(|changed| (parameter.clone(), changed, Vec::new()))
+        .collect()
 }
 
 /// Rounds a hypothesis's numbers to as few digits as possible.
-pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
+pub fn shortened(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
     let level = judge.fitting(candidate);
-    let free: Vec<usize> = (0..candidate.numbers().len()).collect();
-    if free.is_empty() {
-        return candidate.clone();
-    }
-    let Some((_, fitted)) = judge.fit(candidate, &free, level, CELL_STEP, [0, 1]) else {
-        return candidate.clone();
-    };
-    let Some(long) = judge.judged(candidate, level) else {
-        return candidate.clone();
-    };
-    // A short number counts as not fitted, so it has no price. In return, the rest of the cost may
-    // grow by the prices that are saved.
-    let most = long.cost + price(level, free.len());
+    let (_, fitted) = judge.fit_all(candidate, level, [0, 1])?;
+    let long = judge.judged(candidate, level)?;
+    // A short number counts as not fitted, so its price is saved. In return, short numbers may fit
+    // worse, by as much as the saved prices.
+    let most = long.cost + price(level, fitted.numbers.len());
     let steps = candidate.steps(1.0);
     let rounded_to = |part: f64| {
         // The length of a vector may be arbitrarily uncertain, so the error of a number is limited
@@ -149,12 +186,11 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
     let is_as_good = |short: &Candidate| {
         let judged = judge.judged(short, level);
         // Noise with a structure, such as that of a regular grid of samples, may be fitted only by
-        // long numbers. So short numbers are also good if they explain the picture.
+        // long numbers. So short numbers are accepted even at a higher cost, if they explain the
+        // picture.
         judged.is_some_and(|judged| judged.cost <= most) || judge.explains(short)
     };
     let mut shorter =
         (0..QUARTERS).filter_map(|i| rounded_to(TENTH / libm::pow(4.0, f64::from(i))));
-    shorter
-        .find(is_as_good)
-        .unwrap_or_else(|| candidate.clone())
+    shorter.find(is_as_good)
 }

@@ -1,16 +1,14 @@
 //! What a hypothesis about the program leaves unexplained in the pixels of a picture.
 
-use super::{
-    judge::{Judge, Residual},
-    labels::labels,
-};
+use super::judge::{Judge, Residual};
 use crate::grading::{
     hypotheses::{Candidate, Mistake},
     scoring::{Displacement, Prediction, work},
 };
 
-/// Number n such that one in n pixels may be wrong if the prediction is not exact, i.e. if it was
-/// sampled or the picture is a JPEG. Chosen by trial on pictures with known mistakes.
+/// Reciprocal of the fraction of pixels that may be wrong although a hypothesis is correct. It is
+/// used if the prediction is not exact, i.e. if it was sampled or the picture is a JPEG. Chosen by
+/// trial on pictures with known mistakes.
 const PIXELS_PER_MISS: usize = 4000;
 
 /// Distance from an edge, in pixels, within which a wrong pixel is attributed to the edge. It
@@ -19,46 +17,45 @@ const EDGE_REACH: usize = 3;
 /// Distance from an edge, in pixels, within which a wrong pixel of a JPEG is attributed to the
 /// edge. It is the side of a JPEG's blocks.
 const CODED_EDGE_REACH: usize = 8;
-/// Number n such that one in n wrong pixels may lie far from all edges, while the others are still
-/// attributed to edges. A wide pixel filter leaves weak traces far from an edge. Chosen by trial.
+/// Reciprocal of the fraction of wrong pixels that may lie far from all edges, so that errors are
+/// still attributed to edges. A wide pixel filter leaves weak traces far from an edge. Chosen by
+/// trial.
 const PIXELS_PER_INSIDE: usize = 10;
 
 /// Greatest displacement of all edges together that is ignored, in pixels. Rounded numbers in a
-/// scene cause as much.
+/// scene may displace edges this far.
 const IGNORED: f64 = 0.06;
 
-/// Addition to the greatest displacement of all edges that is ignored ([`IGNORED`]), in pixels, if
-/// each pixel has one sample in its middle. For n samples per pixel, an nth of it is added. Chosen
-/// by trial.
+/// Extra tolerance of the displacement of all edges, in addition to [`IGNORED`], in pixels, if each
+/// pixel has one sample. For n samples per pixel, it is divided by n. Chosen by trial.
 const IGNORED_WITH_ONE_SAMPLE: f64 = 0.06;
 
-/// Greatest displacement of the edges of a single object that is ignored, in pixels. It is the
-/// first number, plus another one divided by √n for n samples per pixel. The other one is the third
-/// in a JPEG, which has noise from coding, and otherwise the second. The reason for √n is that
-/// samples on a regular grid, whose distance is 1/√n, move an edge parallel to the grid by up to
-/// half of it.
+/// Greatest displacement of the edges of a single object that is ignored, in pixels. For n samples
+/// per pixel, it is a + b/√n, where a is the first number and b is the second. In a JPEG, b is the
+/// third, because coding adds noise. The distance of samples on a regular grid is 1/√n. So they may
+/// displace an edge parallel to the grid by up to 0.5/√n.
 const IGNORED_OF_OBJECT: [f64; 3] = [0.12, 0.5, 0.7];
 
-/// Displacement of all edges of a JPEG, in pixels to the right or down, above which it is reported,
-/// provided that it is significant (see `SURELY_MOVED`). JPEG coding hides most of a displacement.
-/// The value is greater than the 1/6 pixel by which three samples at the same places in all pixels
-/// may lie off the middle.
+/// Threshold of the displacement of all edges of a JPEG, in pixels to the right or down. A larger
+/// displacement is reported if it is also significant (see `SURELY_MOVED`). Coding hides most of a
+/// displacement, so the value is small. It is greater than 1/6, because the mean of three samples
+/// at the same places in all pixels may lie 1/6 pixel off the middle.
 const MOVED: f64 = 0.2;
 /// Squared length of a displacement of a JPEG's edges, in squared standard deviations, above which
 /// it is significant enough to be reported. Chosen by trial.
 const SURELY_MOVED: f64 = 150.0;
 
-/// Number of hypotheses whose residuals are remembered. The search asks several times for the
-/// residual of the same hypothesis, but of few hypotheses in turn.
+/// Number of hypotheses whose residuals are remembered. The search needs the residual of a
+/// hypothesis several times, with few other hypotheses in between.
 const RESIDUALS: usize = 4;
 
 impl Judge<'_> {
     /// Returns whether a hypothesis explains the picture: no pixel that should have one colour
     /// shows another one, and edges lie in their places and are as sharp as they should be.
     ///
-    /// The middle grid is tested first because this costs less: if the prediction is exact, a cell
-    /// that is certainly wrong contains a wrong pixel. Pixels of one colour follow, and edges come
-    /// last.
+    /// If the prediction is exact, the grid `middle` is tested first, because this is faster than
+    /// testing single pixels. A wrong cell contains at least one wrong pixel, so the test of the
+    /// pixels can then be skipped.
     pub fn explains(&self, candidate: &Candidate) -> bool {
         let is_possible = !self.is_exact(candidate)
             || self
@@ -109,17 +106,14 @@ fn residual_of(judge: &Judge, candidate: &Candidate, prediction: &Prediction) ->
     judge.work.spend(work::RESIDUAL * level.grid.count() as f64);
     let missed = judge.missed(candidate);
     let reach = level.jpeg.map_or(EDGE_REACH, |_| CODED_EDGE_REACH);
-    let is_inside = |at: &&usize| {
-        level
-            .grid
-            .around(**at, reach)
-            .all(|at| prediction.is_flat(at))
-    };
+    let grid = &level.grid;
+    let is_inside = |at: &&usize| grid.around(**at, reach).all(|at| prediction.is_flat(at));
     let inside = strays.pixels.iter().filter(is_inside).count();
     let is_at_edges = inside <= missed + strays.pixels.len() / PIXELS_PER_INSIDE;
-    // Wrong pixels far from edges are wrong areas, whatever else is wrong.
+    // Edges are tested only if almost all wrong pixels lie near them. Other wrong pixels show that
+    // whole areas are wrong.
     let (displacement, width, is_tinted) = if is_at_edges {
-        let labels = labels(judge, candidate, candidate.layout, &level.grid);
+        let labels = judge.labels(candidate, candidate.layout, &level.grid);
         let background = judge.scene.objects.len();
         let groups: Vec<usize> = labels.iter().map(|one| one.unwrap_or(background)).collect();
         let (displacement, width) = displacement_and_width(judge, candidate, prediction, &groups);
@@ -149,7 +143,8 @@ fn displacement_and_width(
 ) -> (Option<Displacement>, Option<f64>) {
     let level = &judge.fine;
     let share = match level.jpeg {
-        // In a JPEG, the score would attribute the effect of coding on edges to few samples.
+        // The score of a JPEG is not used, because it would attribute the effect of coding on edges
+        // to few samples.
         Some(_) => prediction.share(),
         None => {
             let score = prediction.score();

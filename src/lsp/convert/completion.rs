@@ -46,7 +46,8 @@ impl Converter<'_> {
             "kind": kind,
             "detail": Some(completion.detail).filter(|detail| !detail.is_empty()),
             "documentation": documentation,
-            // Editors sort by this text. The number in it preserves the order of the list.
+            // Editors sort completions by this text. It is the completion's index, so editors keep
+            // the order in which the server lists the completions.
             "sortText": format!("{index:04}"),
             // In the protocol, 1 stands for `PlainText` and 2 for `Snippet`.
             "insertTextFormat": 1 + u8::from(is_snippet),
@@ -55,8 +56,8 @@ impl Converter<'_> {
     }
 }
 
-/// Returns the text that a completion inserts in a client without snippets. Example values become
-/// plain text.
+/// Joins the parts of a completion to plain text, for a client without snippets. The text of a
+/// placeholder is inserted like any other text.
 fn plain(pieces: &[SnippetPart]) -> String {
     let texts = pieces.iter().map(|piece| match piece {
         SnippetPart::Text(text) | SnippetPart::Placeholder(text) => text.as_str(),
@@ -64,8 +65,8 @@ fn plain(pieces: &[SnippetPart]) -> String {
     texts.collect()
 }
 
-/// Returns the snippet that a completion inserts. Each example value becomes a numbered
-/// placeholder, which the author replaces by typing.
+/// Converts the parts of a completion to a snippet. Placeholders are numbered from 1; a user jumps
+/// from one to the next and types over its text.
 fn snippet(pieces: &[SnippetPart]) -> String {
     let mut text = String::new();
     let mut holes = 0;

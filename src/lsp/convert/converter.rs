@@ -1,5 +1,5 @@
-//! Converts answers about a document to the types of the protocol. Also converts positions and
-//! changes from the protocol to byte offsets and spans.
+//! Converts diagnostics, edits and other facts about a document to the types of the protocol. Also
+//! converts positions and changes from the protocol to byte offsets and spans.
 
 use serde_json::{Value, json};
 
@@ -40,7 +40,8 @@ impl Converter<'_> {
         self.document.offset(line_column(position))
     }
 
-    /// Converts a range in the protocol to a span. The end of the range may precede its start.
+    /// Converts a range in the protocol to a span. If the end of the range precedes its start, they
+    /// are swapped.
     pub fn span(&self, range: Range) -> Span {
         let (start, end) = (self.offset(range.start), self.offset(range.end));
         Span::new(SourceId::File, start.min(end), end.max(start))
@@ -85,7 +86,8 @@ impl Converter<'_> {
                 Severity::Error => 1,
                 Severity::Warning => 2,
             },
-            // The field `source` already names Pinhole, so the code does not need the prefix.
+            // The prefix `pinhole::` is removed from the code, because the field `source` already
+            // names Pinhole.
             "code": diagnostic.code.trim_start_matches("pinhole::"),
             "source": "pinhole",
             "message": message,
@@ -101,7 +103,8 @@ impl Converter<'_> {
 
     pub fn signature(&self, signature: Signature) -> Value {
         let parameters = signature.parameters.iter().map(|range| {
-            // Offsets within labels are in UTF-16 code units, whatever the unit of positions is.
+            // The protocol demands UTF-16 for offsets within labels, even if the client counts
+            // columns in another unit.
             let before = |end: usize| {
                 let before = signature.label.get(..end).unwrap_or_default();
                 count(Encoding::Utf16.columns(before))
@@ -141,14 +144,14 @@ impl Converter<'_> {
         if !self.client.versioned_edits {
             return json!({ "changes": { self.uri.0.as_str(): edits } });
         }
-        // With the version, an editor can reject the edits if its text has changed since.
+        // The version lets an editor reject the edits if its text has changed in the meantime.
         let document = json!({ "uri": self.uri, "version": self.document.version });
         json!({ "documentChanges": [{ "textDocument": document, "edits": edits }] })
     }
 
     /// Converts a fix to a code action. `of` is the diagnostic that it fixes; `None` if it fixes
-    /// all diagnostics. Made-up values become placeholders of a snippet if the client supports
-    /// snippets in edits.
+    /// all diagnostics. If the fix inserts example values for the user to replace, they become
+    /// placeholders of a snippet, provided that the client supports snippets in edits.
     pub fn action(&self, fix: &Fix, of: Option<&Diagnostic>) -> Value {
         let is_made_up = fix.applicability == Applicability::Placeholder;
         let edit = match (is_made_up, fix.edits.as_slice()) {
@@ -184,7 +187,8 @@ impl Converter<'_> {
         }))
     }
 
-    /// Converts an edit to a snippet in which the example values are placeholders.
+    /// Converts an edit to a snippet. The example values in its text, which the user is to replace,
+    /// become placeholders.
     fn snippet(&self, edit: &Edit) -> Value {
         let mut template = String::new();
         let mut at = 0;
@@ -262,7 +266,7 @@ impl Converter<'_> {
 }
 
 /// Reads the changes of a text from a notification. A change without the field `range` replaces the
-/// whole text. A `range` of null is an error: if it counted as missing, a part of a text would
+/// whole text. A `range` of null is an error: as a missing one, it would let a change of a part
 /// replace the whole text.
 pub fn changes(params: &Value) -> Result<Vec<TextChange>, Refusal> {
     let changes: Vec<Value> = at(params, "/contentChanges")?;

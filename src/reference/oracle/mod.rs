@@ -1,11 +1,11 @@
 //! The oracle: a tracer that decides by textbook formulas what is seen at a sample point, in
-//! arithmetic of hundreds of bits.
+//! arithmetic of 512 to 3000 bits.
 //!
 //! The oracle shares nothing with the tracer. It uses world coordinates instead of the view plane,
-//! the quadratic formula, signed areas, and slabs with divisions. A sum counts as zero if it is
-//! smaller than its terms by a factor of 2 to the power 5/14 of the bits: 2^−500 with 1400 bits,
-//! and 2^−182 with 512. This is far above the rounding errors. It is far below 2^−90, the relative
-//! difference up to which the language lets depths count as equal.
+//! the quadratic formula, signed areas, and slabs with divisions. A sum is treated as zero if it is
+//! at most 2^(−5/14·b) times as large as its terms, where b is the number of bits: 2^−182 for 512
+//! bits, 2^−500 for 1400. This limit is far above the rounding errors. It is far below 2^−90, the
+//! relative difference of depths that are equal by the rules of the language.
 
 mod number;
 
@@ -30,10 +30,10 @@ pub const ALL_SIZES: usize = 1400;
 pub const ALL_VIEWS: usize = 3000;
 
 /// Number of bits that suffices for the oracle's arithmetic if a scene's numbers differ by factors
-/// of at most about 2^100. It takes less time than the larger numbers of bits.
+/// of at most about 2^100. More bits would take more time.
 pub const USUAL_SIZES: usize = 512;
 
-/// A scene prepared for the oracle, a tracer that computes with hundreds of bits.
+/// A scene prepared for the oracle, a reference tracer that computes with 512 to 3000 bits.
 #[derive(Debug)]
 pub struct Oracle {
     /// Arithmetic with the oracle's number of bits.
@@ -56,8 +56,8 @@ enum PreparedShape {
     /// A sphere: `f` is eye − centre, `square` is f·f, and `c` is f·f − radius².
     Sphere { f: V, square: N, c: N },
     /// A triangle: its vertices, and its normal n. `height` is n·(p − eye) for a point p of the
-    /// triangle; it is 0 if the eye lies in the triangle's plane. `scale` is the size of the terms
-    /// of signed areas; an area that is far smaller counts as 0.
+    /// triangle; it is 0 if the eye lies in the triangle's plane. `scale` bounds the magnitude of
+    /// the terms from which signed areas are computed; a far smaller area is treated as 0.
     Triangle {
         vertices: Box<[V; 3]>,
         normal: V,
@@ -179,8 +179,8 @@ impl Oracle {
     /// Returns whether floor(`x`/`square`) is odd, for a coordinate `x` of a point on a
     /// checkerboard whose squares have the side `square`.
     fn is_odd(&self, x: &N, square: &N) -> bool {
-        // A quotient that is only negligibly below an integer counts as this integer. For example,
-        // 1/3 + 2/3 must not become 0.999….
+        // A small number is added, so that a quotient which rounding has made slightly smaller than
+        // an integer becomes this integer. For example, 1/3 + 2/3 must not become 0.
         let close = self.number.exact(1.0) >> (self.number.bits as isize * 3 / 14);
         let cell = (x / square + close).floor();
         (cell.to_int().value() & IBig::ONE) == IBig::ONE
@@ -221,8 +221,8 @@ impl Oracle {
         }
         let root = discriminant.sqrt();
         let roots = [(-&b - &root) / &a, (-&b + &root) / &a];
-        // The eye is on the sphere's surface, so the true t of one root is 0. Because of rounding
-        // errors its computed value may differ from 0, so this root is left out.
+        // If the eye is on the sphere's surface, the true t of one root is 0. Because of rounding
+        // errors, its computed value may differ from 0, so this root is left out.
         if self.sign(c, square) == Ordering::Equal {
             let is_ahead = self.sign(&-&b, &square.sqrt()) == Ordering::Greater;
             return roots.into_iter().skip(1).filter(|_| is_ahead).collect();
@@ -232,7 +232,7 @@ impl Oracle {
 
     /// Intersects the ray with the direction `r` from the eye with a plane whose points p satisfy
     /// n·(p − eye) = `height`. Returns the ray's parameter t. Returns `None` if the eye lies in the
-    /// plane, if the ray is parallel to it, or if it is behind the eye.
+    /// plane, if the ray is parallel to the plane, or if the intersection is behind the eye.
     fn plane(&self, n: &V, height: &N, r: &V) -> Option<N> {
         let slope = dot(n, r);
         if *height == N::ZERO || self.sign(&slope, &(size(n) * size(r))) == Ordering::Equal {
@@ -254,8 +254,8 @@ impl Oracle {
 
     /// Intersects the ray with the direction `r` from the eye with a box. A box is the intersection
     /// of three slabs, each between two parallel planes. The ray is inside of the box from the last
-    /// t at which it enters a slab to the first t at which it leaves one. Returns those of these
-    /// two t that are positive, or an empty list if the ray misses the box.
+    /// t at which it enters a slab to the first t at which it leaves one. Returns the positive ones
+    /// of these two t, or an empty list if the ray misses the box.
     fn cuboid(&self, lo: &V, hi: &V, r: &V) -> Vec<N> {
         let is_parallel = |axis: &usize| self.sign(&r[*axis], &size(r)) == Ordering::Equal;
         let (parallel, across): (Vec<_>, Vec<_>) = (0..3).partition(is_parallel);
@@ -273,8 +273,8 @@ impl Oracle {
         ends.filter(|t| *t > N::ZERO).collect()
     }
 
-    /// Compares two numbers. They count as equal if their difference is negligible, compared with
-    /// the numbers themselves.
+    /// Compares two numbers. They are treated as equal if their difference is negligible compared
+    /// with the numbers themselves.
     fn order(&self, a: &N, b: &N) -> Ordering {
         self.sign(&(a - b), &(abs(a) + abs(b)))
     }

@@ -38,10 +38,10 @@ fn nearly_parallel(random: &mut CaseRng) -> Camera {
     let lowest = random.pick(&[-16.0, -200.0]);
     let view = random.unit() * random.power(-3.0, 3.0);
     let beside = random.unit() * random.power(lowest, -1.0);
-    // The up vector is nearly the view direction. In half of the inputs, and if rounding makes both
-    // exactly parallel, the camera looks nearly straight down instead, and `up` stays the y axis.
-    // The tiny x and z components of the view direction are then exact, since nothing is added to
-    // them.
+    // The up vector is nearly the view direction, because `beside` is small. In half of the inputs,
+    // or if rounding makes the vectors exactly parallel, the camera looks nearly straight down
+    // instead, and the up vector is the y axis. Adding `beside` to `view` may round it away, but
+    // here its x and z components are used without a sum.
     let mut camera = along(DVec3::ZERO, view);
     camera.up = view + beside;
     if camera.up.cross(view) == DVec3::ZERO || random.below(2) == 0 {
@@ -74,10 +74,10 @@ fn lengths(random: &mut CaseRng) -> Camera {
 /// Returns a scene seen by an extremely wide or narrow lens, i.e. with the view plane at a tiny or
 /// huge distance d.
 ///
-/// If d is tiny, some rays are parallel to the checkerboard except for a slope of about d. A ray
-/// counts as exactly parallel if its slope is below a threshold. The threshold is about 2^−90 in
-/// the language's rules, 2^−310 in Pinhole, and 2^−1071 in the oracle (the reference, with 3000
-/// bits). Distances d between 2^−90 and 2^−310 are not tested.
+/// If d is tiny, the slope of some rays towards the checkerboard is about d. A ray is treated as
+/// parallel to the board if its slope is below a threshold: about 2^−90 in the language's rules,
+/// 2^−310 in the tracer, and 2^−1071 in the oracle (the reference, with 3000 bits). Distances d
+/// between 2^−310 and 2^−90 are not tested.
 fn lenses(random: &mut CaseRng) -> CaseScene {
     let lowest = random.pick(&[9.0, 155.0]);
     let d = random.power(lowest, lowest * 1.95);

@@ -70,8 +70,8 @@ pub(super) struct CaseScene {
     bits: usize,
     /// Generator of random points of the picture. By default, all points are equally likely.
     points: Box<dyn Fn(&mut CaseRng) -> SamplePoint>,
-    /// How many halves of the inputs (0, 1 or 2) are points from the generator `points`. The other
-    /// inputs lie close to boundaries between colours.
+    /// Number of halves of the tests (0, 1 or 2) whose points come from the generator `points`. The
+    /// other tests use points close to boundaries between colours.
     halves: u64,
 }
 

@@ -67,8 +67,8 @@ fn thin(random: &mut CaseRng) -> CaseScene {
     let axis = random.below(3) as usize;
     max[axis] = min[axis].next_up();
     let mut eye = random.vector(1.0).normalize() * 5.0;
-    // The eye may be far above the plane of the thin box, or so near it that the box is seen from
-    // its edge.
+    // The eye may be far above the plane of the thin box, or so near to the plane that the box is
+    // seen edge-on.
     eye[axis] = min[axis] + random.sign() * random.power(-15.0, 0.5);
     let shapes = [cuboid(min, max), sphere((min + max) / 2.0, 0.3)];
     input(camera(eye, (min + max) / 2.0), &shapes)

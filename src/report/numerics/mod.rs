@@ -1,16 +1,17 @@
-//! The accuracy of the arithmetic, measured in hard cases.
+//! Measures the accuracy of the arithmetic in hard cases.
 //!
 //! A hard case generates scenes in which rounding errors easily cause wrong answers: rays that
 //! touch surfaces, horizons, shared edges, eyes on surfaces, very large and small numbers. What is
-//! seen at a point is computed three times: by the [`oracle`](crate::reference::oracle) in hundreds
-//! of bits, by the [`textbook`](crate::reference::textbook) formulas in `f64`, and by the tracer
-//! that renders pictures, one ray at a time. (Tests verify that SIMD rays give bit-identical
-//! pictures.) Answers that differ from the oracle's are counted. For one of 16 inputs, the errors
-//! of the distance and of the point are also measured.
+//! seen at a point is computed three times: by the [`oracle`](crate::reference::oracle), a
+//! reference tracer with at least 512 bits; by the [`textbook`](crate::reference::textbook)
+//! formulas in `f64`; and by the tracer that renders pictures. Answers that differ from the
+//! oracle's are counted. For one of 16 inputs, the errors of the distance and of the point are also
+//! measured. The tracer is called for one ray at a time; tests verify that SIMD rays give
+//! bit-identical pictures.
 //!
 //! By default, the inputs lie close to boundaries between colours: at the neighbouring `f64`s on
-//! both sides, and at distances that are uniform on a logarithmic scale. They depend only on the
-//! case and on their own number, so that threads do not affect them.
+//! both sides, and at distances that are uniform on a logarithmic scale. An input depends only on
+//! its case and its index, so threads do not affect it.
 //!
 //! Samplers and films have tests of their own, and are left out. Scenes that the language rejects,
 //! such as those with negative sizes, are left out, too.
@@ -57,8 +58,9 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
 /// scenes.
 const BLOCK: u64 = 100;
 
-/// Tests `inputs_per_case` inputs of every case. Reports the progress as a number of inputs. If it
-/// is cancelled, returns the results so far, which cover about equally many inputs of every case.
+/// Tests `inputs_per_case` inputs of every case. Reports the progress as a number of inputs. If the
+/// run is cancelled, returns the results so far, which cover about equally many inputs of every
+/// case.
 ///
 /// # Errors
 ///
@@ -72,9 +74,9 @@ pub fn run(inputs_per_case: u64, control: &Control) -> Result<NumericsTable, NoT
         let (block, at) = (index / count, (index % count) as usize);
         let inputs = BLOCK.min(inputs_per_case - block * BLOCK);
         let random = &mut CaseRng::new(cases[at].id, block);
-        // A tally measures errors for every 16th of its inputs, by its own count. Each block of
-        // inputs has its own tally, so that the choice does not depend on how the threads share the
-        // blocks.
+        // The errors of every 16th input are measured, as counted by the tally. Each block of
+        // inputs has a tally of its own, so that the same inputs are measured however the threads
+        // share the blocks.
         let mut tally = CaseTally::default();
         cases[at].ask(random, inputs, &mut tally);
         tallies[at] = tallies[at].plus(tally);

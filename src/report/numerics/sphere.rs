@@ -33,8 +33,8 @@ fn silhouettes(random: &mut CaseRng) -> CaseScene {
 }
 
 /// Returns a view along −z from the origin, and a sphere that touches the plane x = 0. Rays in this
-/// plane, in the middle of the picture, touch the sphere at most, which counts as a miss. Rays
-/// beside the plane, on the sphere's side, may hit it.
+/// plane, in the middle of the picture, at most touch the sphere, and a ray that only touches it
+/// misses it. Rays beside the plane, on the sphere's side, may hit it.
 fn touches(random: &mut CaseRng) -> CaseScene {
     let camera = along(DVec3::ZERO, DVec3::NEG_Z);
     let row = random.pixel();
@@ -81,8 +81,8 @@ fn inside(random: &mut CaseRng) -> CaseScene {
 }
 
 fn at_the_surface(random: &mut CaseRng) -> CaseScene {
-    // These three points are exactly 5 from the origin, so the eye is exactly on the surface if
-    // `above` is 0.
+    // These points lie at a distance of exactly 5 from the origin, so the eye is exactly on the
+    // surface if `above` is 0.
     let on = random.pick(&[
         dvec3(3.0, 4.0, 0.0),
         dvec3(0.0, 4.0, -3.0),

@@ -1,5 +1,5 @@
-//! Compares what is seen at points of a picture by the oracle (the reference in hundreds of bits),
-//! by textbook formulas, and by Pinhole.
+//! Compares what is seen at points of a picture by the oracle (a reference tracer of at least 512
+//! bits), by textbook formulas, and by Pinhole.
 
 use dashu_float::ops::Abs;
 use glam::{DVec2, DVec3, dvec2};
@@ -25,7 +25,7 @@ pub struct CaseTally {
     /// Number of inputs tested.
     pub inputs: u64,
     /// Numbers of wrong answers of the textbook formulas and of Pinhole. An answer is wrong if it
-    /// differs from that of the oracle, the reference in hundreds of bits.
+    /// differs from that of the oracle, a reference tracer of at least 512 bits.
     pub wrong: [u64; 2],
     /// Largest measured errors of the textbook formulas and of Pinhole, in the case's unit; `None`
     /// if nothing was measured.
@@ -86,15 +86,16 @@ pub(super) struct Trial {
     oracle: Oracle,
 }
 
-/// Number of inputs per measurement of errors. Every input is tested for whether the right object
-/// is seen. For one of 16 inputs, the errors of the distance and of the point are also measured,
-/// which takes longer. With 16, there are many measurements, and they take little of the time.
+/// Number of tested inputs per measurement of errors. Every input tests whether the right object is
+/// seen. Every 16th input also measures the errors of the distance and of the point, which is slow.
+/// A smaller number would give more measurements, but take more time.
 const INPUTS_PER_MEASUREMENT: u64 = 16;
 
-/// Mean number of searches for a boundary between colours per search that uses the answers of the
-/// oracle, the reference. The other searches use Pinhole's answers. The oracle also finds
+/// Ratio of all searches for a boundary between colours to those that use the answers of the
+/// oracle, a slow reference tracer. The other searches use Pinhole's answers. The oracle also finds
 /// boundaries that Pinhole does not see, but its search takes about six times as long as testing
-/// the inputs beside the boundary. With 8, the oracle's searches take less than half of the time.
+/// the inputs beside the boundary. With a ratio of 8, the oracle's searches take less than half of
+/// the time.
 const BOUNDARIES_PER_ORACLE_SEARCH: u64 = 8;
 
 impl Trial {
@@ -137,16 +138,16 @@ impl Trial {
         self.world.palette()[self.world.slot_at(x, y, dvec2(dx, dy))]
     }
 
-    /// Returns the colour that stands for what is seen: an object, with one of its two colours if
-    /// it is a checkerboard. If `seen` is `None`, it is the background's.
+    /// Returns the colour that identifies what is seen: an object, with one of its two colours if
+    /// it is a checkerboard, or the background if `seen` is `None`.
     fn color(&self, seen: Option<(usize, bool)>) -> Color {
         let background = self.scene.image.background;
         seen.map_or(background, |(object, is_odd)| color(object, is_odd))
     }
 
     /// Measures the errors of the distance and of the point that are seen at `pixels`, and records
-    /// the larger one in `tally`. The unit is the last place of the distance or of the point's
-    /// largest coordinate.
+    /// the larger one in `tally`. The errors are in units in the last place (ulp) of the distance,
+    /// or of the point's largest coordinate.
     fn measure(&self, pixels: DVec2, tally: &mut CaseTally) {
         let r = self.oracle.direction_through(pixels, DVec2::ZERO);
         let Some(seen) = self.oracle.seen(&r) else {
@@ -189,8 +190,8 @@ impl Trial {
 
     /// Tests `count` inputs close to boundaries between colours: the neighbouring `f64`s on both
     /// sides, and points at distances that are uniform on a logarithmic scale. The boundaries are
-    /// searched in random rows and columns, mostly by Pinhole's answers. Some are searched by the
-    /// oracle's, in case Pinhole does not see a boundary.
+    /// searched in random rows and columns. Most searches use Pinhole's answers. Some use the
+    /// oracle's answers, since Pinhole may fail to see a boundary.
     pub fn boundaries(&self, random: &mut CaseRng, count: u64, tally: &mut CaseTally) {
         let end = tally.inputs + count;
         // A scene may have few boundaries. After four searches per input, the remaining inputs are

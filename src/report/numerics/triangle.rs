@@ -54,9 +54,10 @@ fn slivers(random: &mut CaseRng) -> CaseScene {
 /// share an edge without any rounding.
 const LATTICE: DVec3 = dvec3(15.0, 15.0, 18.0);
 
-/// For each edge of a triangle with the sides [`LATTICE`], the centroid of a triangle that shares
-/// the edge and is rotated by 180°, and some points of the edge. All coordinates are relative to
-/// the first triangle's centroid.
+/// Data of the edges of a triangle with the sides [`LATTICE`]. Each edge is shared with a second
+/// triangle, which is rotated by 180°. The first item is the centroid of the second triangle, and
+/// the second item contains some points of the edge. All are relative to the first triangle's
+/// centroid.
 #[rustfmt::skip]
 const SHARED: [([f64; 2], &[[f64; 2]]); 3] = [
     ([0.0, -8.0], &[[-9.0, -4.0], [-4.0, -4.0], [0.0, -4.0], [7.0, -4.0], [9.0, -4.0]]),

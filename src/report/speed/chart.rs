@@ -39,7 +39,7 @@ const LABELS: i32 = 162;
 /// little more than the height of the letters, 18, so that the names do not overlap.
 const LABEL_HEIGHT: i32 = 21;
 
-/// The quantity on a chart's horizontal axis, with the texts for it.
+/// The quantity on a chart's horizontal axis, e.g. the CPU time, with its title and number format.
 struct HorizontalAxis {
     title: &'static str,
     name: &'static str,
@@ -241,13 +241,15 @@ fn spread_out(ends: &[CanvasPoint], rows: &Range<i32>) -> Vec<i32> {
     let mut order: Vec<_> = (0..ends.len()).collect();
     order.sort_by_key(|&at| ends[at].1);
     let mut heights = vec![0; ends.len()];
-    // From the top downwards, each name is placed as high as the names above allow.
+    // From the top downwards, each name is placed at the end of its line or, if that would cover
+    // the name above, directly below that name.
     let mut free = rows.start;
     for &at in &order {
         heights[at] = ends[at].1.max(free);
         free = heights[at] + LABEL_HEIGHT;
     }
-    // From the bottom upwards, names that are below the chart are moved up.
+    // Names that would end below the chart are moved up, and so are the names above them if they
+    // would overlap.
     let mut free = rows.end;
     for &at in order.iter().rev() {
         heights[at] = heights[at].min(free);

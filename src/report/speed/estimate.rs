@@ -10,7 +10,7 @@ use crate::scene::Method;
 /// Estimate of what a method needs to reach an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// Samples per pixel; `None` for the exact method, which takes none.
+    /// Samples per pixel; `None` for the exact method, which uses no samples.
     pub per_pixel: Option<f64>,
     /// Estimated CPU time, in seconds.
     pub cpu: f64,
@@ -24,8 +24,8 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Returns whether this method may be as fast as the `fastest` one, since the measurements do
-    /// not distinguish them: the time of one lies within the range of the other's single runs.
+    /// Returns whether this method may be as fast as the `fastest` one. This is assumed if the CPU
+    /// time of one method lies within the range of the other method's single runs.
     fn is_as_fast_as(&self, fastest: &Self) -> bool {
         self.cpu <= fastest.cpu_runs[1] || self.cpu_runs[0] <= fastest.cpu
     }
@@ -42,15 +42,15 @@ pub struct Ranking {
 
 impl Measurement {
     /// Estimates the samples and the time that a method needs to reach an error. Returns `None` if
-    /// more samples do not reduce the method's error. Also returns `None` if `error` is too small
-    /// to be measured, i.e. not above the error bound of the exact picture (as a root mean square).
+    /// more samples do not reduce the method's error. Also returns `None` if `error` is at most the
+    /// root mean square error bound of the exact picture, since such small errors cannot be
+    /// measured.
     pub fn estimate(&self, series: &MethodSeries, error: f64) -> Option<Estimate> {
         self.tells(error).then(|| series.estimate(error)).flatten()
     }
 
-    /// Estimates the time that the exact method needs. Returns `None` if it was not measured. Also
-    /// returns `None` if `error` is not above the error bound of the exact picture (as a root mean
-    /// square).
+    /// Estimates the time that the exact method needs. Returns `None` if it was not measured, or if
+    /// `error` is at most the root mean square error bound of the exact picture.
     pub fn exact_estimate(&self, error: f64) -> Option<Estimate> {
         let runs = self.exact.as_ref().filter(|_| self.tells(error))?;
         let Run { cpu, wall, .. } = Run::typical(runs);
@@ -74,7 +74,8 @@ impl Measurement {
         let sampled = self.series.iter().filter_map(estimate);
         let exact = self.exact_estimate(error).map(|it| (Method::Exact, it));
         let mut all: Vec<_> = sampled.chain(exact).collect();
-        // If the system does not report CPU times, there is nothing to rank.
+        // If the system does not report CPU times, the estimates are NaN, and there is nothing to
+        // rank.
         all.retain(|(_, estimate)| estimate.cpu.is_finite());
         all.sort_by(|(_, a), (_, b)| {
             let measured_first = a.is_extrapolated.cmp(&b.is_extrapolated);
@@ -98,10 +99,11 @@ impl MethodSeries {
     /// smallest measured number of samples if it suffices. Returns `None` if more samples do not
     /// reduce the error.
     ///
-    /// The error is assumed to fall as a power of the number of samples, i.e. along a straight line
-    /// in logarithms. Between two measured numbers of samples, it is the line through both points.
-    /// Beyond the last one, the line starts at the last point, with the slope fitted to the last
-    /// three. Times are assumed to grow linearly with the samples.
+    /// The error is assumed to be proportional to a power of the number of samples, which is a
+    /// straight line on logarithmic axes. Between two measured numbers of samples, the line goes
+    /// through both points. Beyond the last measured number, it starts at the last point, and its
+    /// slope is fitted to the last three points. Times are assumed to grow linearly with the
+    /// samples.
     pub fn estimate(&self, error: f64) -> Option<Estimate> {
         let estimate = |run: &dyn Fn(&SeriesPoint) -> Run| {
             let step = |point: &SeriesPoint| (point.per_pixel as f64, run(point));
@@ -119,7 +121,8 @@ impl MethodSeries {
 
     fn estimate_by(&self, steps: &[Measured], error: f64) -> Option<Estimate> {
         let (&(first, _), &(last, last_run)) = (steps.first()?, steps.last()?);
-        // Index of the first number of samples from which on all measured errors are small enough.
+        // Index of the smallest number of samples that, like all larger ones, has a small enough
+        // error.
         let enough = steps.iter().rposition(|(_, run)| run.error > error);
         let enough = enough.map_or(0, |last| last + 1);
         let per_pixel = match steps.get(enough) {
@@ -148,8 +151,7 @@ impl MethodSeries {
     /// two measured numbers: with `few` samples the error is too large, and with `many` it is not.
     fn between(&self, (few, of_few): &Measured, (many, of_many): &Measured, error: f64) -> f64 {
         let share = if of_many.error == 0.0 {
-            // An error of 0 has no logarithm. In this case, `many` samples are returned, which
-            // suffice.
+            // An error of 0 has no logarithm, so `many` samples are returned.
             1.0
         } else {
             libm::log(of_few.error / error) / libm::log(of_few.error / of_many.error)
@@ -162,10 +164,10 @@ impl MethodSeries {
     }
 }
 
-/// Returns the least number n·n or n·(n + 1) that is at least `per_pixel`, for an integer n.
-/// Multi-jittered sampling divides the pixel into a grid of as many cells as samples. For such a
-/// number, the grid is nearly square; for others, it may be far from square (for a prime number, it
-/// is one row), and the error may then exceed the interpolated one.
+/// Returns the least number of samples that is at least `per_pixel` and equals n·n or n·(n + 1) for
+/// an integer n. Multi-jittered sampling divides the pixel into a grid with a cell for each sample.
+/// For these numbers, the grid is nearly square. For others, it may be a long strip (for a prime
+/// number, a single row), so that the error may exceed the interpolated one.
 fn oblong(per_pixel: f64) -> f64 {
     let root = per_pixel.sqrt().floor();
     let next = root + 1.0;
@@ -174,9 +176,9 @@ fn oblong(per_pixel: f64) -> f64 {
     enough.unwrap_or(per_pixel)
 }
 
-/// Returns the time that `per_pixel` samples take. It is interpolated linearly between the
-/// neighbouring measured numbers of samples in `steps`. Above the last one, the line through the
-/// first and the last is extended.
+/// Returns the time that `per_pixel` samples take. Between two measured numbers of samples in
+/// `steps`, the time is interpolated linearly. Above the largest one, it is extrapolated along the
+/// line through the first and the last measurement.
 fn time_at(steps: &[Measured], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     let times = steps.iter().map(|(per_pixel, run)| (*per_pixel, time(run)));
     let times: Vec<_> = times.collect();
@@ -187,7 +189,8 @@ fn time_at(steps: &[Measured], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     let slope = |a: &(f64, f64), b: &(f64, f64)| (b.1 - a.1) / (b.0 - a.0);
     match times.windows(2).find(around) {
         Some([a, b]) => a.1 + slope(a, b) * (per_pixel - a.0),
-        // Measured times may fall by chance, but more samples never take less time.
+        // Measured times may fall by chance, but more samples never take less time. So a negative
+        // slope is replaced by 0.
         _ => last.1 + slope(first, last).max(0.0) * (per_pixel - last.0),
     }
 }

@@ -69,7 +69,8 @@ fn row(method: &'static str, runs: &[Run]) -> CsvRow {
     }
 }
 
-/// Converts runs to JSON: the typical times and error, and those of each run.
+/// Converts runs to JSON: the median times and the root mean square error of all runs, and the
+/// values of each run.
 fn of_runs(runs: &[Run]) -> Value {
     let each = |number: fn(&Run) -> f64| runs.iter().map(number).collect::<Vec<_>>();
     let Run { cpu, wall, error } = Run::typical(runs);

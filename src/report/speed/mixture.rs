@@ -7,10 +7,10 @@ use crate::{
     tracer::{GRID, World},
 };
 
-/// Maximum work of counting the pixels with several colours, in units of about 50 ns, i.e. about
-/// two seconds in all. When it is used up, the remaining pixels count as having a single colour. A
-/// usual report takes 45 s, so the user hardly notices two more; with less work, more pixels would
-/// remain uncounted.
+/// Maximum work of counting the pixels with several colours. One unit is about 50 ns, so the
+/// maximum is about two seconds. The pixels that are not reached within this limit are treated as
+/// having a single colour. With a smaller limit, more pixels would remain uncounted; with a larger
+/// one, a report, which usually takes 45 s, would take noticeably longer.
 const MAX_WORK: u64 = 40_000_000;
 
 /// Shares, from 0 to 1, of the pixels that show more than one colour. Only in these pixels can a
@@ -31,8 +31,8 @@ impl Mixture {
         let mixed = share_of_mixed(&World::new(scene));
         Self {
             edges,
-            // The difference may be negative, since an edge between objects of the same colour
-            // counts as an edge, but not as several colours.
+            // An edge between objects of the same colour is counted in `edges`, but not in `mixed`.
+            // So the difference may be negative, and is then replaced by 0.
             board: (mixed - edges).max(0.0),
         }
     }
@@ -46,7 +46,7 @@ fn share_of_mixed(world: &World) -> f64 {
     let mut mixed: u64 = 0;
     for tile in whole.tiles(2 * GRID) {
         integrator.shares(tile, |_, shares| {
-            // Smaller shares may be rounding errors.
+            // Shares of at most 1e-9 may be rounding errors, so they are ignored.
             let seen = shares.iter().filter(|(_, share)| *share > 1e-9);
             mixed += u64::from(seen.count() > 1);
         });

@@ -47,8 +47,8 @@ pub fn time(estimate: &Estimate, time: f64) -> String {
     }
 }
 
-/// Formats an estimated number of samples per pixel. It is empty for the exact method, which takes
-/// none.
+/// Formats an estimated number of samples per pixel. Returns an empty text for the exact method,
+/// which uses no samples.
 pub fn samples(estimate: &Estimate) -> String {
     match estimate.per_pixel {
         None => String::new(),

@@ -7,8 +7,8 @@ use super::{
 use crate::scene::Method;
 
 /// Returns sentences that explain why the methods differ in this scene: in which pixels they can
-/// err, how the error falls there, and what the exact method does instead. If no method was
-/// measured or all pixels have a single colour, there is only the first sentence.
+/// err, how the error falls there, and how the exact method works. If no method was measured or all
+/// pixels have a single colour, only the sentence about the pixels is returned.
 pub fn reasons(measured: &Measurement) -> Vec<String> {
     let mixture = measured.mixture;
     let (edges, board) = (percent(mixture.edges), percent(mixture.board));

@@ -29,8 +29,8 @@ pub struct Request {
     /// Number of runs of each method with each number of samples. If `None`, as many as there is
     /// time for.
     pub runs: Option<u64>,
-    /// Errors, in linear light. For each of them, the report estimates how many samples and how
-    /// much time a method takes to reach it.
+    /// Errors, in linear light. For each error, the report estimates how many samples and how much
+    /// time a method needs to reach it.
     pub errors: Vec<f64>,
     /// Time that the measurement may take. It has no effect if both `samples` and `runs` are given.
     pub budget: Duration,
@@ -99,9 +99,9 @@ pub struct EndSlope {
 }
 
 impl EndSlope {
-    /// Minimum steepness of the slope, i.e. value of −`slope`, for the report to say that more
-    /// samples help. A smaller value may come from noise in the measurement. The steepness for
-    /// independent samples, 0.5, is far above the minimum.
+    /// Minimum value of −`slope` at which the report says that more samples help. A smaller value
+    /// may come from noise in the measurement. For independent samples, the value is 0.5, far above
+    /// the minimum.
     const LEAST: f64 = 0.05;
 
     /// Returns the factor by which the error falls if there are four times as many samples,
@@ -193,9 +193,9 @@ impl MethodSeries {
         })
     }
 
-    /// Returns the number of samples per pixel that takes the CPU time `cpu`. It is interpolated
-    /// linearly between the measured numbers. Below the least measured number, that number is
-    /// returned; above the greatest, the greatest. Returns `None` if nothing was measured.
+    /// Returns the number of samples per pixel that takes the CPU time `cpu`, interpolated linearly
+    /// between the measured numbers. The result is at least the smallest and at most the greatest
+    /// measured number. Returns `None` if nothing was measured.
     pub fn samples_in(&self, cpu: f64) -> Option<u64> {
         let (first, last) = (self.points.first()?, self.points.last()?);
         let slower = |pair: &&[SeriesPoint]| pair[1].typical().cpu > cpu;

@@ -1,11 +1,11 @@
 //! Times renders, and compares them with the exact picture.
 //!
 //! The exact picture is rendered first, since all errors are differences from it. This render is
-//! not timed, because it also warms up the caches and the processor. Then come several rounds. In
-//! each, every method renders once with every number of samples. In the first round, the numbers of
-//! samples are 1, 4, 16, …, as long as there is time for a few such rounds, unless the user chose
-//! the numbers. In later rounds, the renders are in shuffled order, so that other load on the
-//! machine affects all methods alike.
+//! not timed, because it also warms up the caches and the processor. Then the renders are timed in
+//! several rounds. In each round, every method renders once with every number of samples. If the
+//! user does not choose these numbers, they are 1, 4, 16, …; the first round stops when there is no
+//! time for a few rounds with more samples. In later rounds, the renders are in shuffled order, so
+//! that other load on the machine affects all methods alike.
 //!
 //! A timed render starts with the scene in memory and ends with the picture in memory. It includes
 //! preparing the objects and the samples, and starting the threads. Reading the scene, comparing
@@ -32,15 +32,15 @@ use crate::{
 };
 
 /// Minimum and maximum length of the series 1, 4, 16, … of samples per pixel, if the user does not
-/// choose the numbers. Slopes are taken from the last three numbers. With at least four, they leave
-/// out one sample per pixel, whose error is untypical. The maximum allows up to 4^9 samples per
-/// pixel, but the time limit usually ends the series earlier.
+/// choose the numbers. Slopes are fitted to the last three numbers. With fewer than four, they
+/// would include one sample per pixel, whose error is untypical. The maximum allows up to 4^9
+/// samples per pixel, but the time limit usually ends the series earlier.
 const RUNGS: (usize, usize) = (4, 10);
 
-/// Usual and maximum number of runs of each render, if the user does not choose it. The series of
-/// samples is continued only if there is time for the usual number. With three runs, the median
-/// ignores one that other load on the machine delayed. With more than nine, the report would take
-/// longer for hardly better medians.
+/// Usual and maximum number of runs of each render, if the user does not choose the number. The
+/// series of samples is continued only if there is time for the usual number. With three runs, the
+/// median ignores a run that other load on the machine delayed. With more than nine, the report
+/// would take longer for hardly better medians.
 const RUNS: (u64, u64) = (3, 9);
 
 /// Number of samples per pixel of the slowest method in the pictures by which the page compares
@@ -49,12 +49,12 @@ const RUNS: (u64, u64) = (3, 9);
 const SHOWN: u64 = 16;
 
 /// Makes the measurement that the request describes. Calls `progress` after each timed render with
-/// the share of the work that is done. If it is cancelled, returns the results so far, marked as
-/// interrupted. The progress callback in `control` is not called.
+/// the share of the work that is done. The progress callback in `control` is not called. If the
+/// user cancels the measurement, returns the results so far, marked as interrupted.
 ///
 /// # Errors
 ///
-/// It is cancelled before the exact picture is done, there is not enough memory, or no thread can
+/// The user cancels before the exact picture is done, there is not enough memory, or no thread can
 /// be started.
 pub fn measure(
     subject: &MeasuredScene,
@@ -188,8 +188,8 @@ impl Benchmark<'_> {
     }
 
     /// Returns whether to continue with four times as many samples. `next` is the estimated time of
-    /// all methods together with this number. The first numbers, as many as the minimum in
-    /// [`RUNGS`], are always measured. More are measured only if there is time for all runs, and if
+    /// all methods together with this number. The minimum length of the series in [`RUNGS`] is
+    /// always measured. After that, the series continues only if there is time for all runs, and if
     /// a method's error is still above the smallest requested error.
     fn goes_on(&self, next: Duration) -> bool {
         let least = self.request.errors.iter().copied().fold(1.0, f64::min);
@@ -228,8 +228,8 @@ impl Benchmark<'_> {
     }
 
     /// Renders the pictures by which the page compares the sampling methods. All take about the
-    /// same CPU time, which is that of the slowest method with about [`SHOWN`] samples per pixel.
-    /// Of each picture, the same small area is stored.
+    /// same CPU time: the time of the slowest method with about [`SHOWN`] samples per pixel. Only
+    /// one small area is stored, the same for all pictures.
     fn pictures(&mut self) -> Result<(), RenderError> {
         let measured = &mut self.measured;
         let Some(last) = measured.rungs.len().checked_sub(1) else {
@@ -295,7 +295,7 @@ fn error_of(film: &Film, reference: &Film) -> f64 {
 }
 
 /// Renders the scene with the given method, samples per pixel and seed. The exact method ignores
-/// the last two.
+/// the number of samples and the seed.
 fn rendered(
     scene: &Scene,
     method: Method,
@@ -316,14 +316,15 @@ fn rendered(
 /// areas, magnified, must fit beside each other on the page; a smaller area would show fewer edges.
 const PART: (u32, u32) = (48, 27);
 
-/// Minimum share of the pixels of an area that show another object than its most frequent one. With
-/// less, the area counts as having no edge, and another area is preferred for comparing the
-/// methods. The value is a guess at how much of an edge must be visible.
+/// Minimum share of an area's pixels that show another object than the most frequent one. If the
+/// share is smaller, the area is treated as having no edge, and another area is preferred for
+/// comparing the methods. The value is a guess at how much of an edge must be visible.
 const OTHER_OBJECT: f64 = 0.1;
 
 /// Returns the area in which the page compares the methods. Areas without background that show an
-/// edge between objects are preferred, then other areas without background. Among these, the area
-/// with the greatest error is returned. Areas are tried at distances of half their size.
+/// edge between objects are preferred, and then other areas without background. Among equally
+/// preferred areas, the one with the greatest error is returned. Areas are tried at distances of
+/// half their size.
 fn worst_part(world: &World, film: &Film, exact: &Film) -> Result<Area, TooLarge> {
     let whole = world.picture();
     let (width, height) = (whole.width.min(PART.0), whole.height.min(PART.1));

@@ -38,9 +38,10 @@ const OTHER_FUNCTIONS: &[(&str, &str)] = &[
     ("exp log ln random rand noise", "write the number itself"),
 ];
 
-/// Number of previous problems that are searched for one whose help lists all functions. If there
-/// is one, a new report refers to `pinhole explain functions` instead of repeating the list. Any
-/// small number works; a search of all problems, up to ten thousand, would be slow.
+/// Number of previous problems that are examined before an unknown function is reported. If the
+/// help of one of them lists all functions, the new report refers to `pinhole explain functions`
+/// instead of repeating the list. Any small number works. Examining all problems, up to ten
+/// thousand, would be slow.
 const LOOKED_BACK: usize = 8;
 
 impl<'s> Evaluator<'_, 's> {
@@ -100,7 +101,7 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     /// Reports an unknown function. Suggests the function with the nearest name among those that
-    /// accept arguments of the types `arguments`. `None` is an unknown type.
+    /// accept arguments of the types `arguments`. An element `None` stands for an unknown type.
     fn unknown_function(&mut self, function: &Name<'s>, arguments: &[Option<Type>]) {
         if self.names.suggestions.is_trying() {
             return;
@@ -187,8 +188,9 @@ impl<'s> Evaluator<'_, 's> {
         let text = |element: &Element<'_>| self.sources.text(element.value.span).to_owned();
         let is_color = |name| css::color(name).is_some();
         let is_rgb = row.gives == Type::Color;
-        // A function of vectors needs parentheses around the coordinates, and a function of numbers
-        // must not have them.
+        // The call that was probably meant is suggested. A function of a vector needs parentheses
+        // around the coordinates, so they are added; a function of numbers must not have them, so
+        // they are removed.
         let meant = match (row.takes, arguments) {
             // The language has no transparency, so a fourth channel is left out. A colour such as
             // `red` needs no `rgb` around it.
@@ -340,7 +342,8 @@ impl<'s> Evaluator<'_, 's> {
                 format!("`{name}` takes a number from -1 to 1"),
                 match known {
                     // The number is out of range by more than a rounding error, so it has no
-                    // inverse sine or cosine.
+                    // inverse sine or cosine. A quotient has a help of its own, since its operands
+                    // may be in the wrong order.
                     [Value::Number(x)] if x.abs() > 1.0 + 1e-9 && !written.contains('/') => {
                         "no angle has that".to_owned()
                     }

@@ -69,7 +69,8 @@ pub fn suits<'s>(
 
 impl<'s> Evaluator<'_, 's> {
     /// Returns the value of an expression. `wanted` is the type that the context requires, if it is
-    /// known; the result may have another type. Returns `None` after errors are reported.
+    /// known; the result may have another type. If the expression has errors, reports them and
+    /// returns `None`.
     pub fn value(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
         match &value.kind {
             ValueKind::Number(written) => Some(Value::Number(self.number(written, value.span)?)),
@@ -119,9 +120,9 @@ impl<'s> Evaluator<'_, 's> {
         Some(number)
     }
 
-    /// Returns the error for `number`, which has no unit and stands where an angle is required.
-    /// `what` names the place in words. The fixes add a unit; only units for which `fits` holds are
-    /// offered.
+    /// Returns the error for `number`, which has no unit, although an angle is required. `what`
+    /// describes the required angle in words, such as a field's name. The fixes add a unit. A unit
+    /// is offered only if `fits` returns true for it.
     pub fn bare_angle(
         &self,
         what: &str,
@@ -180,9 +181,9 @@ impl<'s> Evaluator<'_, 's> {
             .fixes(fixes)
     }
 
-    /// Returns the first name in `value` whose value comes from a `--set` argument of the command
-    /// line, and the span of the argument's value. A mistake in `value` is then a mistake in the
-    /// argument.
+    /// Searches `value` for a name that a `--set` argument of the command line defines. Returns the
+    /// first such name, and the span of the value in the argument. A mistake in `value` must then
+    /// be corrected in the argument, not in the file.
     pub(super) fn set_in(&self, value: &tree::Value<'s>) -> Option<(&'s str, Span)> {
         let ValueKind::Name(name) = value.kind else {
             return value.parts().into_iter().find_map(|part| self.set_in(part));
@@ -303,8 +304,8 @@ fn is_plain_number(value: &tree::Value<'_>) -> bool {
     }
 }
 
-/// Formats an angle for a message: to thousandths below 1, which is usual in radians, and otherwise
-/// to tenths.
+/// Formats an angle for a message. Numbers below 1, which are usual in radians, get three decimal
+/// places, and others get one.
 fn rounded(number: f64) -> String {
     if number.abs() < 1.0 {
         format!("{number:.3}")

@@ -133,9 +133,8 @@ impl<'s> Evaluator<'_, 's> {
 }
 
 /// Returns an example of the missing third coordinate of a vector whose other coordinates are `x`
-/// and `y`. Chooses the greater of the two, because the vector may hold the sides of a triangle,
-/// and a triangle with these three sides exists. If both are 0, returns 1, because a zero vector
-/// has no direction.
+/// and `y`: the greater of the two. If the coordinates are the sides of a triangle, a triangle with
+/// these three sides then exists. If both are 0, returns 1, because a zero vector has no direction.
 fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
     let (a, b): (f64, f64) = (x.parse().ok()?, y.parse().ok()?);
     Some(match (a > b, a == 0.0 && b == 0.0) {

@@ -27,8 +27,8 @@ impl<'s> Evaluator<'_, 's> {
             return value;
         }
         let defined = self.names.defined.get(name);
-        // With `--set` arguments, all definitions are evaluated before the blocks. Still, text of
-        // the file may use only names that are defined above it.
+        // If there are `--set` arguments, all definitions of the file are evaluated before its
+        // blocks. Even then, a text of the file may use only names that are defined above it.
         let is_above =
             |defined: &&Defined| span.source != SourceId::File || defined.place.start < span.start;
         if let Some(defined) = defined.filter(is_above) {
@@ -201,9 +201,10 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     /// Returns the known name that is nearest to the undefined name `name`, and whether it is a
-    /// safe replacement. Searches the scene's definitions, and also the colours if a colour is
-    /// wanted (`is_color`), or else the constants. If the wanted type is unknown and nothing was
-    /// found, searches all colours. Leaves out names whose values have another type than `wanted`.
+    /// safe replacement. Compares with the names that the scene defines. Compares in addition with
+    /// the colours if a colour is wanted (`is_color`), and with the constants otherwise. If nothing
+    /// is found and the wanted type is unknown, compares with all colours. Names whose values have
+    /// another type than `wanted` are left out.
     fn nearest(
         &self,
         name: &str,
@@ -240,7 +241,8 @@ impl<'s> Evaluator<'_, 's> {
             Some(_) => None,
         });
         let near = near?;
-        // `lightred` is not a CSS colour, but it is probably not a misspelt `lightgrey` either.
+        // A name such as `lightred`, which is not a CSS colour, is probably not a misspelt
+        // `lightgrey` either, so that colour is not suggested.
         let is_of_colors = css::color(near).is_some();
         if is_of_colors && near != name.replace('_', "") && is_of_tone(name) {
             return None;

@@ -1,5 +1,4 @@
-//! Keeps the names that are defined at the current place of the text, and what was reported about
-//! names.
+//! Keeps the names that are defined at the current place of the text, and the reports about names.
 
 use std::{
     cell::RefCell,
@@ -21,7 +20,7 @@ use crate::{
     },
 };
 
-/// Names that are defined at the current place of the text, and what was reported about names.
+/// Names that are defined at the current place of the text, and the reports about names.
 #[derive(Debug, Default)]
 pub struct Names<'s> {
     /// Values of the `let`s and of the indices (counters of a `for`) that are defined so far.
@@ -38,8 +37,8 @@ pub struct Names<'s> {
     /// Names of the indices of all blocks. An index is the counter of a `for`, such as `i` in
     /// `for i < 8`.
     pub(super) indices: HashSet<&'s str>,
-    /// Remaining number of name comparisons, shared by all searches for the defined name most
-    /// similar to an undefined one.
+    /// Number of name comparisons that may still be made. Every search for the known name that is
+    /// most similar to an undefined name is counted.
     budget: ComparisonBudget,
     /// Problems of undefined names. They are kept apart because some of the other problems are
     /// discarded when a value is evaluated again.
@@ -68,8 +67,8 @@ pub(in crate::scene) struct Defined {
     pub place: Span,
     /// Span of the value, in the file or in a `--set` argument of the command line.
     pub from: Span,
-    /// Unit that the formula of the value suggests, such as radians if it uses `pi`. It matters if
-    /// a number without a unit stands where an angle is required.
+    /// Unit that the formula of the value suggests, such as radians if it uses `pi`. The unit
+    /// matters if a number without a unit stands where an angle is required.
     pub origin: UnitOrigin,
 }
 
@@ -131,9 +130,9 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Removes and returns the `let` that has the same name as `index` and stands further down in
-    /// the file, so that the index can be defined. With `--set` arguments, all definitions are
-    /// evaluated before the blocks, so a later `let` may already be defined.
+    /// Removes and returns a `let` with the same name as `index` that stands further down in the
+    /// file, so that the index can be defined. Such a `let` may already be defined if there are
+    /// `--set` arguments, since all definitions are then evaluated before the blocks.
     pub fn hide_below(&mut self, index: Name<'s>) -> Option<(&'s str, Defined)> {
         let place = self.place(index.text)?;
         let is_below = place.source == index.span.source && place.start > index.span.start;
@@ -181,12 +180,12 @@ impl<'s> Names<'s> {
         self.definitions.get(name).copied()
     }
 
-    /// Returns the names that are defined so far, for a search for the one most similar to an
-    /// undefined name. The number of comparisons in all searches is limited. Subtracts those of
-    /// this search from the remaining number; returns `None` if too few remain.
+    /// Returns the names that are defined so far, so that they can be compared with an undefined
+    /// name. Subtracts their number from the number of comparisons that may still be made. Returns
+    /// `None` if fewer are left.
     pub(super) fn to_compare(&self) -> Option<&[&'s str]> {
-        // Approximate number of predefined colours and constants, with which every search also
-        // compares. An estimate is enough, because it only limits the number of searches.
+        // Approximate number of predefined colours and constants. An undefined name is compared
+        // with them too. An estimate is enough, because it only limits the number of searches.
         const PREDEFINED: usize = 200;
         let enough = self.budget.spend(self.order.len() + PREDEFINED);
         enough.then_some(&self.order)
@@ -199,8 +198,8 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Returns the remaining number of name comparisons, shared by all searches for the defined
-    /// name most similar to an undefined one.
+    /// Returns the number of name comparisons that may still be made. Every search for the known
+    /// name that is most similar to an undefined name is counted.
     pub fn budget(&self) -> &ComparisonBudget {
         &self.budget
     }

@@ -18,7 +18,8 @@ use crate::{
 type Left<'t, 's> = (Value, Span, Option<&'t tree::Value<'s>>);
 
 impl<'s> Evaluator<'_, 's> {
-    /// Returns the negative of a value. Reports a type that has none.
+    /// Returns the negative of a value. Reports an error if values of its type have no negative,
+    /// such as colours.
     pub(super) fn negation(&mut self, sign: Span, operand: &tree::Value<'s>) -> Option<Value> {
         let value = self.value(operand, None)?;
         let negative = value::negate(value);

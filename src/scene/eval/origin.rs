@@ -1,5 +1,5 @@
-//! Finds out in which unit a number is meant that stands for an angle but lacks a unit. A number
-//! derived from `pi`, for example, is meant in radians.
+//! Determines the unit of a number that is written without a unit where an angle is required. A
+//! number derived from `pi`, for example, is probably in radians.
 //!
 //! In: the tree of a value, and the [`UnitOrigin`]s of the names that it uses. Out: the
 //! [`UnitOrigin`] of the value, which follows from its formula.
@@ -64,7 +64,8 @@ impl UnitOrigin {
                     let by_turn = by_turn || is_half_turn(operand);
                     let product = match (left, step.operator, right, unit) {
                         (_, Operator::Divide, _, Some(unit)) => In(unit),
-                        // The product `x * 180 / pi` converts radians to degrees.
+                        // The product `x * 180 / pi` converts radians to degrees, so it is in
+                        // degrees.
                         (Plain | In(Unit::Radians), Operator::Divide, In(Unit::Radians), _)
                             if by_turn =>
                         {

@@ -1,7 +1,7 @@
 //! Suggestions for undefined names.
 //!
-//! In: an undefined name, and the nearest defined one. Out: the meaning of the undefined name while
-//! the suggestion is tried.
+//! In: an undefined name, and the nearest defined one. Out: a suggestion. While it is tried, the
+//! undefined name has the meaning of the defined one.
 //!
 //! The suggested name may cause another error in the value that uses it. To find out, the caller
 //! evaluates the whole value again with the meaning of the suggested name, and then keeps or

@@ -75,7 +75,7 @@ impl<'s> Lowering<'s> {
 
     fn has_errors(&self) -> bool {
         let mut all = self.problems.iter().chain(&self.found);
-        // All problems in `names.problems` are errors.
+        // All problems in `names.problems` are errors, so it suffices that there are any.
         all.any(Diagnostic::is_error)
             || !self.names.problems.borrow().is_empty()
             || !self.sources.file.invalid_utf8().is_empty()
@@ -119,9 +119,9 @@ impl<'s> Lowering<'s> {
         (example, fix)
     }
 
-    /// Builds the object of a block. If `for` repeats the block, builds the object for the values
-    /// `indices` of the block's indices. Returns `false`, and builds nothing, if a value is missing
-    /// or wrong.
+    /// Builds the object of a block. If `for` repeats the block, `indices` contains the values of
+    /// its counters for this object. Returns `false`, and builds nothing, if a value is missing or
+    /// wrong.
     pub(super) fn object(&mut self, block: &LoweredBlock<'s>, indices: &[u32]) -> bool {
         let Some(shape) = Shape::lower(block, &mut self.problems) else {
             return false;

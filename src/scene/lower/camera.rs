@@ -1,4 +1,5 @@
-//! Builds the camera, and warns if it does not see what was probably meant.
+//! Builds the camera. Warns of probable mistakes, for example if an object is outside of the
+//! picture.
 
 use glam::DVec3;
 
@@ -54,8 +55,8 @@ impl<'s> Lowering<'s> {
                     .at(eye_place, "the eye")
                     .help("move one of them, or give a `direction` instead of `lookat`")
                     .report(&mut self.problems);
-                // An editor shows those parts of a scene that have no errors. The camera has no
-                // view direction, so it is left out.
+                // The view direction is undefined, so the camera is left out of the scene that an
+                // editor shows.
                 view = None;
             }
             (Some(eye), Some(view), Some(given)) => {
@@ -115,11 +116,11 @@ impl<'s> Lowering<'s> {
         if !(is_parallel || sine < LEAST_SINE) {
             return;
         }
-        // If the camera looks along up, only the direction `level_direction(up)` decides what is at
-        // the top of the picture. `across` is the component of this direction that is perpendicular
-        // to up. The picture's top is `-across` if the camera looks along up, and `across` if it
-        // looks against up. Only the direction of `up` matters; it is scaled so that its square
-        // does not overflow.
+        // If the view direction is parallel to up, the direction `level_direction(up)` decides what
+        // is at the top of the picture. `across` is the component of this direction that is
+        // perpendicular to up. If the camera looks against up, `across` points to the top of the
+        // picture; otherwise, `-across` does. Only the direction of `up` matters, so it is scaled
+        // to keep its square from overflowing.
         let up = up / up.abs().max_element();
         let level = level_direction(up);
         let across = level * up.dot(up) - up * level.dot(up);
@@ -307,8 +308,8 @@ impl Lowering<'_> {
                 continue;
             }
             reported = Some(place);
-            // Suggest 1 m or the eye's height above the board as the side, if samples can tell such
-            // squares apart.
+            // The suggested side is 1 m or the eye's height above the board, if samples can tell
+            // squares of this side apart.
             let height = (board.y - camera.eye.y).abs();
             let larger = [1.0, height].into_iter().find(|&square| !is_lost(square));
             let larger = larger.map(numbers::short);
@@ -330,7 +331,7 @@ impl Lowering<'_> {
     }
 }
 
-/// Returns the value of `lookat` or `direction` with which the camera looks at `point`, as text.
+/// Returns, as text, the value of `lookat` or `direction` with which the camera looks at `point`.
 /// Returns `None` if there is no such direction.
 fn towards(camera: &Camera, point: DVec3) -> Option<String> {
     let (from, to) = match camera.view {

@@ -61,8 +61,8 @@ impl<'s> Lowering<'s> {
         let Some(&condition) = broken else {
             return Some(value);
         };
-        // A number that is not 0 but rounds to 0 has a warning already. The report that it breaks
-        // the condition replaces the warning.
+        // A number that is not 0 but is rounded to 0 has a warning already. If it breaks the
+        // field's condition, the error replaces the warning.
         let is_rounded = self.problems.len() > before && value == Value::Number(0.0);
         if is_rounded {
             self.problems.truncate(before);
@@ -108,8 +108,9 @@ impl<'s> Lowering<'s> {
         let texts: Vec<&str> = texts.map(|it| self.sources.text(it.value.span)).collect();
         let meant = match (row.takes, texts.as_slice()) {
             (Type::Color, [r, g, b, _]) => Some(format!("rgb({r}, {g}, {b})")),
-            // The value of a field without a default, such as `far`, depends on other fields, so it
-            // is not guessed.
+            // Two equal numbers were probably meant as one number, so one is suggested if the field
+            // has a default. The value of a field without a default, such as `far`, depends on
+            // other fields, so no number is suggested.
             (Type::Number, [first, second])
                 if first == second && matches!(row.preset, Preset::Value(_)) =>
             {

@@ -34,8 +34,8 @@ pub(super) fn one_of_two(name: &str, [first, second]: [Span; 2], sources: &Sourc
     })
 }
 
-/// Returns a fix that removes the text at `span`, which also stands elsewhere. The fix is safe
-/// unless it also removes a comment.
+/// Returns a fix that removes the text at `span`, of which the file contains an equal copy
+/// elsewhere. The fix is safe unless it also removes a comment.
 pub(super) fn remove_equal(title: String, span: Span, sources: &Sources) -> Fix {
     let fix = Fix::remove_whole(title, span, sources);
     let mut taken = fix.edits.iter().map(|edit| sources.text(edit.span));
@@ -57,10 +57,10 @@ impl Lowering<'_> {
         Some(Fix::new(title, [edit]).placeholder())
     }
 
-    /// Returns the fixes for two fields that exclude each other. A [`Choice`] has several ways to
-    /// state the same fact, each a set of fields. A fix keeps the fields of one way, and removes
-    /// those of the other ways. There is no such fix if the way that is kept lacks a field, or if
-    /// any other field stands between those that would be removed.
+    /// Returns the fixes for two fields of a block that exclude each other. `choice` groups such
+    /// fields into alternatives. For each of the two fields, one fix keeps its alternative and
+    /// removes the fields of all others. The fix is omitted if the alternative to keep lacks a
+    /// field, or if any other field stands between the fields to remove.
     pub(super) fn one_of(
         &self,
         block: &LoweredBlock<'_>,

@@ -55,8 +55,8 @@ impl<'s> Lowering<'s> {
                     let problem = problem.at(name.span, "this name is taken").help(help);
                     self.problems.push(problem);
                 }
-                // Uses of the name get no reports, because it is uncertain which of its two
-                // meanings they have.
+                // The name is defined without a value. It is uncertain which of its two meanings a
+                // use of the name has, so uses are not reported.
                 self.names.define(name, None, &definition.value);
             }
             (None, None) => {
@@ -134,8 +134,8 @@ impl<'s> Lowering<'s> {
         let mut lowered = LoweredBlock {
             keyword: block.keyword(),
             name: block.name.filter(|_| row.is_object),
-            // If the end of the block is missing, or text before its `{` could not be parsed, a
-            // field may be lost.
+            // If the end of the block is missing, or text before its `{` could not be parsed,
+            // fields may be lost. Missing fields are then not reported.
             unfinished: block.close.is_none() || block.bad.iter().any(|bad| Some(bad.start) < open),
             ..LoweredBlock::empty(row, block.span)
         };
@@ -157,7 +157,8 @@ impl<'s> Lowering<'s> {
             self.field(field, &mut lowered);
         }
         let unknown: Vec<_> = left().filter(|field| !is_known(field)).collect();
-        // If two unknown words stand for one field, it is uncertain which of them is meant.
+        // If two unknown words probably mean the same field, it is uncertain which of them is
+        // right. The field is recorded, so that it is not reported as missing either.
         let mut tried: Vec<&str> = Vec::new();
         for field in unknown
             .iter()
@@ -272,8 +273,8 @@ impl<'s> Lowering<'s> {
     }
 
     /// Improves the report of a field with a wrong number of colours, such as `color (red, green,
-    /// blue)`: suggests `color` or `colors`, whichever of them takes that number. `is_free` says
-    /// that the block does not have the suggested field yet.
+    /// blue)`. If the number is right for the other one of the fields `color` and `colors`,
+    /// suggests this field. `is_free` says that the block does not have the suggested field yet.
     fn other_colors(&mut self, before: usize, field: &tree::Field<'s>, takes: Type, is_free: bool) {
         let is_color = |value: &tree::Value<'s>| match &value.kind {
             ValueKind::Call(call) => call.function.text == "rgb",
@@ -403,8 +404,8 @@ impl<'s> Lowering<'s> {
         });
     }
 
-    /// Records the name of an object. Reports a name that cannot be used, and the name of a block
-    /// that takes none.
+    /// Records the name of an object. Reports a name that cannot be used, and a name of a block
+    /// that is not an object.
     fn name_of_block(&mut self, row: &BlockRow, block: &tree::Block<'s>) {
         let Some(name) = block.name else { return };
         let text = name.text;

@@ -21,9 +21,9 @@ pub(super) struct Lowering<'s> {
     pub(super) names: Names<'s>,
     /// Blocks that are not objects, such as `camera`; only the first of each kind.
     pub(super) blocks: Vec<LoweredBlock<'s>>,
-    /// Whether the sum of the current indices is odd; `None` outside of repeated blocks. If an
-    /// object's colour is a pair, the first colour is used for an even sum, and the second for an
-    /// odd one.
+    /// Whether the sum of the current indices (the counters of a `for`) is odd; `None` outside of
+    /// repeated blocks. If an object's colour is a pair, the first colour is used for an even sum,
+    /// and the second for an odd one.
     pub(super) is_odd: Option<bool>,
     /// The objects built so far.
     pub(super) objects: Vec<Object>,

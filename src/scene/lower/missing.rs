@@ -29,7 +29,8 @@ impl<'s> Lowering<'s> {
         for choice in row.choices {
             let is_taken = |way: &&&[&str]| way.iter().any(has);
             let taken = choice.ways.iter().filter(is_taken).count();
-            // If the block uses fields of two alternatives, their conflict is reported elsewhere.
+            // If the block uses fields of two alternatives, their conflict is reported elsewhere,
+            // so none of their fields is reported as missing.
             let open = choice
                 .ways
                 .iter()

@@ -17,9 +17,9 @@ use crate::{
     syntax::{self, tree::Item},
 };
 
-/// Number of bytes at the start of a file that are searched for zero bytes, which show that the
-/// file is binary rather than text. A larger number would find zero bytes further down in a file,
-/// but the search would take longer. Binary files usually have some near their start.
+/// Number of bytes at the start of a file in which zero bytes are counted. Zero bytes show that the
+/// file is binary rather than text. Binary files usually have zero bytes near their start. A larger
+/// number would also find those further down, but the search would take longer.
 const BINARY_BYTES: usize = 1 << 14;
 
 /// Reads a scene: parses the file and the `--set` arguments, and converts them to a scene.
@@ -37,9 +37,10 @@ pub fn read_unless(sources: &Sources, cancel: &AtomicBool) -> Result<Reading, Ca
     cancel::unless_set(cancel, reading)
 }
 
-/// Minimum size, in bytes, of the parts in which a file is read. A smaller part would not be worth
-/// a thread with a stack of its own. The tree of a larger part would take more memory, and
-/// cancelling would take effect later.
+/// Minimum size, in bytes, of the parts in which a file is read. Several threads parse the parts,
+/// and a file that is too short for two parts is read as a whole. With a much smaller size,
+/// starting the threads could take longer than they save. The tree of a larger part would need more
+/// memory, and cancelling would take effect later.
 const PART_BYTES: usize = 1 << 16;
 
 /// Reads a scene as [`read`] does, in parts of at least `bytes` bytes. The parts are converted one
@@ -199,7 +200,8 @@ fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
         diagnostics.push(syntax::UTF16.at(first, &[], None));
         return;
     }
-    // Texts contain no zero bytes, except perhaps one or two by mistake.
+    // A text has no zero bytes, except perhaps one or two by mistake. A file with more of them is
+    // taken for a binary file.
     let mut start = sources.file.text().as_bytes();
     start = start.get(..BINARY_BYTES).unwrap_or(start);
     if start.contains(&0) && start.iter().filter(|&&byte| byte == 0).count() > 2 {

@@ -33,7 +33,8 @@ impl<'s> Lowering<'s> {
         repetition: &Repetition<'s>,
     ) {
         if repetition.indices.is_empty() {
-            // The names of the indices are unknown, so uses of the usual names are not reported.
+            // The indices could not be parsed, so their names are unknown. Uses of the usual names
+            // `i`, `j` and `k` are therefore not reported as undefined.
             self.names.know_words("i j k");
             return self.unbuilt(row, block);
         }
@@ -64,9 +65,8 @@ impl<'s> Lowering<'s> {
     /// Returns the combinations of the indices' values, concatenated in order: 0 0, 0 1, 1 0, 1 1
     /// for `for i < 2, j < 2`. Reports a wrong count and then returns `None`.
     ///
-    /// Counts that depend on no index are evaluated before any combination is stored. So a product
-    /// of counts that is too large is reported without much memory, whatever the order of the
-    /// indices.
+    /// Counts that depend on no index are evaluated first. If their product is too large, this is
+    /// reported before many combinations are stored, whatever the order of the indices.
     fn combinations(&mut self, block: &Block<'s>, repetition: &Repetition<'s>) -> Option<Vec<u32>> {
         let most = MOST_OBJECTS.saturating_sub(self.objects.len());
         if !self.are_counted_before(repetition) {
@@ -169,7 +169,7 @@ impl<'s> Lowering<'s> {
             };
             let is_built = self.is_wanted() && self.object(lowered, values);
             if is_built && self.problems.len() > before {
-                // A warning that several objects of the block cause is reported once.
+                // If several objects of the block cause the same warning, it is reported once.
                 for problem in self.problems.split_off(before) {
                     let place = problem.labels.first().map(|label| label.span);
                     if warnings.insert((problem.code.clone(), place)) {
@@ -362,8 +362,8 @@ impl<'s> Lowering<'s> {
         let with_index: Vec<Span> = with_index
             .filter(|it| self.depends(*it, repetition))
             .collect();
-        // A problem with the first combination often occurs with all combinations. Such a problem
-        // gets a label with the indices only if its value depends on one.
+        // A problem with the first combination of indices often occurs with all others too. Such a
+        // problem gets a label with the indices only if its value depends on one of them.
         let is_first = values.iter().all(|&value| value == 0);
         // A fix must not replace a formula that depends on an index by the value for one
         // combination.
@@ -385,8 +385,8 @@ impl<'s> Lowering<'s> {
                 let help = "its value differs by index, and an index begins at 0: write a formula that does for all of them";
                 problem.help = Some(help.to_owned());
             }
-            // The vertices of a triangle are often on one line at the end of a row of triangles
-            // that meet in a point. The help says how to leave such a triangle out.
+            // In a row of triangles that ends in a point, the vertices of the last triangle are
+            // often on one line. The help says how to leave this triangle out.
             if problem.is("on_one_line")
                 && let Some(help) = &mut problem.help
             {

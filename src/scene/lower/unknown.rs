@@ -1,7 +1,7 @@
 //! Reports fields that a block does not have, with the fields that were probably meant.
 //!
-//! A fix renames a field only if that leads to no error: the block may still be given the new
-//! field, and the value has the field's type or can be converted to it.
+//! A fix renames a field only if that leads to no error: the block has neither the new field nor
+//! one that excludes it, and the value has the field's type or can be converted to it.
 
 use super::{fixes::quoted, lowering::Lowering};
 use crate::{
@@ -22,8 +22,8 @@ use crate::{
 };
 
 /// Largest possible picture. It stands in for the image when a sampler is checked before the
-/// picture's size is known: a number of samples that is allowed for it is allowed for every
-/// picture.
+/// picture's size is known. A number of samples that is not too large for this picture is not too
+/// large for any other.
 const LARGEST: Image = Image {
     width: 1 << 20,
     height: 1 << 20,
@@ -232,7 +232,8 @@ impl<'s> Lowering<'s> {
             let written = self.spread(block, fields, value);
             return Some(Meant::new(fields, quoted(fields), whole, written));
         }
-        // The word may be a value whose field's name is missing.
+        // The word may be a value whose field's name is missing, such as `red`. The type of the
+        // value then determines the field.
         let takes = match value.kind {
             ValueKind::Missing if schema::method(word).is_some() => Some(Type::Method),
             ValueKind::Missing if css::color(word).is_some() => Some(Type::Color),
@@ -286,8 +287,8 @@ impl<'s> Lowering<'s> {
     /// Evaluates a value, but reports only its undefined names.
     fn evaluate_quietly(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
         if let ValueKind::Name(name) = value.kind {
-            // A name that is neither defined nor a colour may be that of a sampling method. It is
-            // then read as a method, and not reported as undefined.
+            // A name that is neither defined nor a colour may be the name of a sampling method. The
+            // name is then read as a method, and not reported as undefined.
             let is_known = self.names.place(name).is_some() || css::color(name).is_some();
             if !is_known && matches!(wanted, None | Some(Type::Method)) {
                 return schema::method(name).map(Value::Method);
@@ -302,7 +303,7 @@ impl<'s> Lowering<'s> {
     }
 
     /// Returns the text of a value, converted to the type of the field `row` if necessary, and
-    /// whether writing it is safe. Returns `None` if the block cannot be given this field, or if
+    /// whether writing it is safe. Returns `None` if the field cannot be added to the block, or if
     /// the value does not fit and cannot be converted.
     fn fitting(
         &mut self,

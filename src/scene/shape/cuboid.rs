@@ -1,4 +1,5 @@
-//! The shape `box`: how it is built from its block, its fields, its extent and its description.
+//! The shape `box`. This file builds it from its block, gives access to its fields, computes its
+//! extent, and describes it.
 
 use glam::DVec3;
 
@@ -135,7 +136,8 @@ fn empty(block: &LoweredBlock<'_>, min: DVec3, max: DVec3, problems: &mut Proble
     let problem = error("empty_box", format!("the box has no extent along {axis}"));
     problems.push(match (block.given(BOX.min), block.given(BOX.max)) {
         (Some(low_given), Some(high_given)) => {
-            // Ordering the coordinates of the corners does not help if two of them are equal.
+            // The fix swaps coordinates so that each coordinate of `max` is the greater one. It is
+            // not offered if two of them are equal, since the box would still have no extent.
             let in_order = min.cmpne(max).all().then(|| {
                 let corners = [(low_given, min.min(max)), (high_given, min.max(max))];
                 let edits = corners.map(|(given, corner)| Edit::new(given.span, exactly(corner)));

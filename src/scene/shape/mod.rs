@@ -1,6 +1,6 @@
 //! Shapes of objects, with their colours.
 //!
-//! Each kind of shape has a file. It defines how the shape is built from its block, its position
+//! Each kind of shape has a file, which defines how the shape is built from its block, its position
 //! and extent, its fields, and its description. This file only dispatches to the kinds.
 //!
 //! A new kind begins with [`BlockKind`] and its row in the schema. From there, compiler errors and
@@ -106,9 +106,10 @@ impl Shape {
         schema::of_kind(self.block_kind()).name
     }
 
-    /// Returns three colours of the shape: for a box, those of the faces perpendicular to x, y and
-    /// z; for a checkerboard, that of the even squares, and twice that of the odd squares; for any
-    /// other shape, three times its only colour.
+    /// Returns three colours of the shape. For a box, they are the colours of the faces
+    /// perpendicular to x, y and z. For a checkerboard, the first is the colour of the even
+    /// squares, and the others are the colour of the odd squares. For any other shape, all three
+    /// are its only colour.
     pub fn colors(&self) -> [Color; 3] {
         for_each_kind!(self, own => own.colors())
     }
@@ -121,7 +122,7 @@ impl Shape {
         }
     }
 
-    /// Returns the contents of a box; `None` for any other shape.
+    /// Returns the shape as a box; `None` for any other shape.
     pub fn cuboid(&self) -> Option<&Cuboid> {
         match self {
             Self::Box(cuboid) => Some(cuboid),
@@ -204,9 +205,9 @@ mod tests {
         source::{Source, Sources},
     };
 
-    /// Returns sets of fields that a block can have together. A [`Choice`](crate::schema::Choice)
-    /// of the block has alternatives that exclude each other. Each alternative occurs in at least
-    /// one set.
+    /// Returns lists of fields that a block can have at the same time. Fields of different
+    /// alternatives of a [`Choice`](crate::schema::Choice) exclude each other, so they are in
+    /// different lists. Each alternative occurs in at least one list.
     fn ways(row: &'static BlockRow) -> impl Iterator<Item = Vec<&'static FieldRow>> {
         let most = row.choices.iter().map(|choice| choice.ways.len()).max();
         (0..most.unwrap_or(1)).map(move |way| {

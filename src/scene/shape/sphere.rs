@@ -1,4 +1,5 @@
-//! The shape `sphere`: how it is built from its block, its fields, its extent and its description.
+//! The shape `sphere`. This file builds it from its block, gives access to its fields, computes its
+//! extent, and describes it.
 
 use glam::DVec3;
 

@@ -1,5 +1,5 @@
-//! The shape `triangle`: how it is built from its block, its fields, its extent and its
-//! description.
+//! The shape `triangle`. This file builds it from its block, gives access to its fields, computes
+//! its extent, and describes it.
 
 use glam::DVec3;
 
@@ -134,7 +134,8 @@ impl Triangle {
                 let distances = vertices.map(|vertex| vertex.distance(centroid));
                 distances.into_iter().fold(0.0, f64::max)
             }
-            // The distance from the centroid to a vertex is at most the length of the longest side.
+            // The distance from the centroid to a vertex is at most the length of the longest side,
+            // so a sphere of this radius contains the triangle.
             TriangleOutline::Centered(triangle) => triangle.sides.max_element(),
         };
         Some((centroid, radius))

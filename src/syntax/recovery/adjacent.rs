@@ -33,7 +33,8 @@ impl<'s> Recovery<'_, 's> {
             [] => return bad(self.behind()),
             [_] => return values.swap_remove(0),
             [first, second, rest @ ..] => {
-                // A comment of another language may follow, so the span ends with the last value.
+                // A comment of another language may follow the values, so the reported span ends
+                // with the last value.
                 let last = rest.last().unwrap_or(second);
                 (first.clone(), second.clone(), first.span.to(last.span))
             }
@@ -70,8 +71,8 @@ impl<'s> Recovery<'_, 's> {
                 let fix = replace(span, whole.replace(' ', ""));
                 self.report(&say::BAD_NUMBER.safe_if(false), span, &[whole, label], fix);
             }
-            // If the field takes a vector, `2 ball` is a product: `ball` is either a number or a
-            // vector, and both can be multiplied by 2.
+            // If the field requires a vector, `2 ball` is a product without its operator: `ball` is
+            // a number or a vector, and both can be multiplied by 2.
             (Some(Type::Vector), 2) if commas == 0 && self.is_named_factor(&first, &second) => {
                 self.missing_between(&first, &second);
             }
@@ -105,8 +106,8 @@ impl<'s> Recovery<'_, 's> {
         bad(span)
     }
 
-    /// Reports a list without parentheses. In `center1.6, 1, 0`, the first value is only the end of
-    /// a word, so there is no fix.
+    /// Reports a list without parentheses. `fix` is dropped if a word ends directly before the
+    /// list, as in `center1.6, 1, 0`: the list may then start within this word.
     pub(super) fn missing_parentheses(&mut self, span: Span, fix: Option<Fix>) {
         let help = example(self.context.takes);
         let before = self.line_before(span.start);
@@ -130,13 +131,13 @@ impl<'s> Recovery<'_, 's> {
             };
             return self.report(said, right.span, &[&r], None);
         }
-        // Two values are a product, as in `2 pi`, if one is a number literal and the other surely
-        // is a number.
+        // Two values are a product, as in `2 pi`, if one is a number literal and the other probably
+        // stands for a number.
         let sign = Span::new(self.id, left.span.end, right.span.start);
         let are_numbers = (is_plain_number(left) && self.is_factor(right))
             || (self.is_factor(left) && is_plain_number(right));
-        // If the field takes a vector or an angle, `2 ball` and `(n * 0.28) ball` are products,
-        // too.
+        // If the field requires a vector or an angle, a number before a name is a factor, as in `2
+        // ball` and `(n * 0.28) ball`.
         let is_scaled = matches!(self.context.takes, Some(Type::Vector | Type::Angle))
             && self.is_named_factor(left, right);
         let is_product =
@@ -187,7 +188,8 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Returns whether `value` starts with a name that surely stands for a number.
+    /// Returns whether `value` is a name that probably stands for a number, or a formula of such a
+    /// name and number literals.
     pub(super) fn is_factor(&self, value: &Value<'s>) -> bool {
         match &value.kind {
             ValueKind::Name(name) => self.words.is_factor(name),
@@ -206,7 +208,7 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Returns whether a value surely consists of numbers.
+    /// Returns whether a value probably consists of numbers.
     pub(super) fn is_number(&self, value: &Value<'s>) -> bool {
         match &value.kind {
             ValueKind::Number(_) => true,
@@ -241,8 +243,8 @@ impl<'s> Recovery<'_, 's> {
         if !(rest.iter().all(is_digits) && (is_grouped || is_decimal)) {
             return false;
         }
-        // If exactly three digits follow the only comma, the comma separates thousands: few decimal
-        // fractions have exactly three digits.
+        // If exactly three digits follow the only comma, the comma separates thousands, because few
+        // decimal fractions have exactly three digits. A number such as `0,125` is an exception.
         let is_whole_number = are_thousands && is_single && *head != "0";
         let (message, sign) = if is_grouped || is_whole_number {
             ("no commas stand in a number", "_")

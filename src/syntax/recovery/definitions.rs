@@ -45,7 +45,8 @@ impl<'s> Recovery<'_, 's> {
         self.clear_uncertain_fixes(problems_before);
         definition.span = keyword.to(definition.value.span);
         let is_right = self.problems.len() == problems_before;
-        // The definition may be followed by a name, which starts the next item, or by a separator.
+        // A name after the definition is correct, since it starts the next item. A separator after
+        // a correct definition is reported elsewhere. Anything else is unexpected.
         let is_next = self.is_name(0) || (is_right && matches!(self.word(0), ";" | ","));
         if !is_next && !self.is_boundary() {
             if is_right {
@@ -164,7 +165,7 @@ impl<'s> Recovery<'_, 's> {
         } else {
             let before = Span::new(self.id, start.start, name.span.start);
             let mut edits = vec![Edit::new(before, "let ")];
-            // A `;` at the end belongs to the other language, so the fix removes it.
+            // In other languages, a `;` ends the definition. The fix removes it.
             if self.is(0, ";") {
                 let sign = self.bump();
                 edits.push(Edit::remove_in(sign, self.text));

@@ -304,8 +304,9 @@ impl<'s> Recovery<'_, 's> {
         self.value()
     }
 
-    /// Reports values in a block that lack a field's name. If they are certainly the values of the
-    /// first fields of a sphere or a box, adds these fields to the block.
+    /// Reports values in a block that lack a field's name. If the language's table says which
+    /// fields such values belong to, as in `sphere { (0, 1, 0) 2 }`, adds these fields to the
+    /// block.
     fn value_without_field(&mut self, block: &mut Block<'s>) {
         let (start, problems_before) = (self.here(), self.problems.len());
         if matches!(self.word(0), ")" | "]") {
@@ -314,8 +315,8 @@ impl<'s> Recovery<'_, 's> {
         let mut values = Vec::new();
         let (mut is_listed, mut end) = (false, start);
         while self.starts_value(0) && self.kind(0) != TokenKind::Word {
-            // A name after a comma is taken as a value, unless a value follows the name. In that
-            // case the name is the next field.
+            // A name after a comma is read as a further value. If the name has a value of its own,
+            // it is instead the name of the next field.
             let has_value = !matches!(self.kind(1), TokenKind::Name | TokenKind::Sign)
                 || matches!(self.word(1), "(" | "[" | "<" | "=" | ":" | ":=");
             if self.is_name(0) && (!is_listed || has_value) {
@@ -337,10 +338,10 @@ impl<'s> Recovery<'_, 's> {
             block.bad.push(start.to(self.behind()));
             return;
         }
-        // The span ends with the last value, before a comment.
+        // The span ends with the last value, so it does not include a comment after the values.
         let span = start.to(end);
         block.bad.push(span);
-        // A mistake within the values has no report of its own.
+        // Problems within the values are removed, since the values are reported as a whole.
         self.problems.truncate(problems_before);
         let is_vector =
             |value: &Value<'s>| matches!(&value.kind, ValueKind::Tuple(parts) if parts.len() == 3);

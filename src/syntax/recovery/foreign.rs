@@ -21,8 +21,8 @@ use crate::{
 /// bounds the time of the search; the text before a `?` is usually shorter.
 const CONDITION_TOKENS: usize = 24;
 
-/// Position where a comment of another language may start. It decides which tokens start one: `#`,
-/// for example, also starts a colour code.
+/// Position where a comment of another language may start. The position decides which tokens start
+/// a comment: a `#` before a value, for example, may also start a colour code.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum CommentPosition {
     /// Before an item or a field.
@@ -172,8 +172,9 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Skips comments of other languages, and records their first characters, such as `#`, for a
-    /// report. A comment ends with its line. If the line opens a block before the comment, the
-    /// comment ends before the `}` at the end of the line.
+    /// report. A comment ends at the end of its line. If the line contains the `{` of a block that
+    /// is still open at the comment, any `}` at the end of the line closes the block and is not
+    /// skipped.
     pub(super) fn comments(&mut self, place: CommentPosition) {
         while self.starts_comment(place) {
             let start = self.here().start;
@@ -214,8 +215,8 @@ impl<'s> Recovery<'_, 's> {
                 || (word == "%" && place == CommentPosition::Operator);
             return is_place && self.is_prose();
         }
-        // In `1 -- big`, the `--` starts a comment. In `1 --b`, and in `1 -- b` if `b` is defined,
-        // the first `-` subtracts and the second one is a sign.
+        // Between values, `--` starts a comment if a blank and an unknown name follow, as in `1 --
+        // big`. Otherwise, as in `1 --b`, the first `-` subtracts and the second one is a sign.
         let name = self.word(2);
         let is_remark = self.is_name(2)
             && !self.is_adjacent(2)
@@ -285,9 +286,9 @@ impl<'s> Recovery<'_, 's> {
 
     /// Reports a file of another program as one mistake. Returns whether the text is such a file.
     pub(super) fn foreign_file(&mut self) -> bool {
-        // Number of bytes at the start of the file that are searched for the strings by which a
-        // kind of foreign file is known. Such strings usually occur near the start. The limit
-        // bounds the time for a large file.
+        // Number of bytes at the start of the file that are searched for the strings that identify
+        // files of another program. Such strings usually occur near the start. The limit bounds the
+        // time for a large file.
         const ENOUGH: usize = 1 << 14;
         let text = self.text.get(..self.source.floor_char_boundary(ENOUGH));
         let text = text.unwrap_or_default().trim_start_matches('\u{feff}');

@@ -17,8 +17,8 @@ use crate::{
 const NO_NAMES: &str = "a an the my new add create draw make object";
 
 /// Maximum number of tokens of a line that are searched for the `{` that ends the head of a block.
-/// The search stops there as at the end of the line. Heads are shorter, and the limit bounds the
-/// time for a very long line.
+/// A `{` further on is not found. Heads are shorter than this; the limit bounds the time for a very
+/// long line.
 const LINE_TOKENS: usize = 24;
 
 impl<'s> Recovery<'_, 's> {
@@ -79,10 +79,10 @@ impl<'s> Recovery<'_, 's> {
 
     /// Reads a block from its `{` on.
     fn open_block(&mut self, mut block: Block<'s>) {
-        // Maximum number of blocks within one another that are read; blocks further inside are
-        // skipped. The language has no blocks within blocks, but reading them allows reports about
-        // mistakes in the inner ones. A limit is needed because each level takes stack; a somewhat
-        // larger one would do, too.
+        // Maximum nesting depth of blocks that are read; deeper blocks are skipped. The language
+        // has no nested blocks, but reading them allows reports about mistakes in the inner blocks.
+        // A limit is needed because each level of nesting uses stack. Somewhat larger values work
+        // as well.
         const DEEPEST: usize = 3;
         block.open = Some(self.bump());
         if self.blocks == DEEPEST {
@@ -114,8 +114,8 @@ impl<'s> Recovery<'_, 's> {
         self.bump();
     }
 
-    /// Reads a block, whose head may be wrong, or any other line. The line usually starts with a
-    /// name.
+    /// Reads a block, even if its head is wrong, or a definition without its `let`. Reports and
+    /// skips any other line.
     fn block_or_line(&mut self) {
         let has_other_kind = self.is_name(0) && self.is_kind(1) && !self.is_kind(0);
         if self.is_head(0) && !has_other_kind {
@@ -219,7 +219,7 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Reports a missing `{`, and reads the block from there on.
+    /// Reports that a block lacks its `{`, and reads the fields that follow the head.
     fn without_open(&mut self, mut block: Block<'s>, kind: Name<'s>) {
         let head = block.span.to(self.behind());
         block.span = head;
@@ -268,7 +268,8 @@ impl<'s> Recovery<'_, 's> {
         self.items.push(Item::Bad(start.to(self.behind())));
     }
 
-    /// Skips to the next item that starts a line, or past the next block or `}`.
+    /// Skips to the next item at the start of a line. If a block or a `}` comes first, skips this
+    /// and stops after it.
     fn skip_lines(&mut self) {
         while self.kind(0) != TokenKind::End {
             if self.is_on_new_line(0) {
@@ -314,8 +315,8 @@ impl<'s> Recovery<'_, 's> {
         while self.is(0, "}") {
             all = all.to(self.bump());
         }
-        // If no item follows, another token than `}` may have been meant, so the fix would not be
-        // certain.
+        // The fix is certain only if the next token starts a line or an item. Otherwise, another
+        // token than the `}` may have been meant.
         let is_before_item = self.is_on_new_line(0) || self.is_head(0) || self.is(0, "let");
         // If a block without its `{` was reported shortly before, the `}` may close that block, so
         // there is no fix.

@@ -82,8 +82,8 @@ impl<'s> Recovery<'_, 's> {
         if self.words.is_foreign_function(function.text) && self.problems.len() == problems_before {
             return self.foreign_function(function, list);
         }
-        // All `%` among the arguments of a function that makes colours, as in `rgb(100%, 0%, 0%)`,
-        // are reported as one mistake.
+        // If a call has several problems and contains a `%`, as in `rgb(100%, 0%, 0%)`, one report
+        // about the `%` replaces them. If the function is unknown, this report is omitted.
         let is_known = schema::function(function.text).is_some();
         if self.problems.len() > problems_before + 1 && self.written(parentheses).contains('%') {
             self.problems.truncate(problems_before);

@@ -4,7 +4,8 @@
 //! each mistake. This is a recursive-descent parser over the lexer's tokens. It reads items in
 //! `items`, fields in `fields`, indices in `repetition`, values in `values`, `adjacent` and
 //! `lists`, names in `names`, numbers in `numbers`, needless separators in `signs`, and constructs
-//! of other languages in `foreign`. An item without mistakes is read as pest reads it. Three rules:
+//! of other languages in `foreign`. For an item without mistakes, its tree is the same as that of
+//! the generated parser pest. It follows three rules:
 //!
 //! - Where a token fits nowhere, reading continues at the next field, line, item or closing brace
 //!   (`resync`).
@@ -50,7 +51,7 @@ pub struct Recovery<'w, 's> {
     lexer: Lexer<'s>,
     /// Tokens read ahead from the lexer, without comments and invisible characters.
     tokens: VecDeque<Token>,
-    /// Offset after the last token that was taken.
+    /// Offset after the last token that was consumed.
     last_end: usize,
     /// The items read so far, including those that pest read.
     pub(super) items: Vec<Item<'s>>,
@@ -58,13 +59,14 @@ pub struct Recovery<'w, 's> {
     pub(super) problems: Problems,
     /// Whether a mistake hides the rest of the text.
     is_cut: bool,
-    /// Whether error recovery read an item that was probably meant otherwise, but found no better
-    /// explanation, so that pest's reading was kept.
+    /// Whether error recovery read an item that follows the grammar but was probably meant
+    /// otherwise, and found no better explanation of it. The node that the generated parser made
+    /// was then kept.
     is_doubtful: bool,
     /// Offset after the last item that error recovery read.
     pub(super) read_to: usize,
-    /// Whether [`Self::foreign_file`] has tested if the text is a file of another program, which is
-    /// done once.
+    /// Whether [`Self::foreign_file`] has already tested if the text is a file of another program.
+    /// The test is done only once.
     is_checked: bool,
     /// Context of what is read: the block, or the file.
     context: Context<'s>,
@@ -125,8 +127,8 @@ impl<'w, 's> Recovery<'w, 's> {
     }
 
     /// Reads one item, or reports the text in its place. Returns the item's end, which is after
-    /// `start`. Returns the end of the text if it is a file of another program or if the maximum
-    /// number of problems is reached.
+    /// `start`. Returns the end of the text if the text is a file of another program, or if the
+    /// maximum number of problems is reached.
     pub fn item(&mut self, start: usize) -> usize {
         if !self.is_checked && self.foreign_file() {
             self.read_to = self.text.len();
@@ -143,7 +145,7 @@ impl<'w, 's> Recovery<'w, 's> {
         self.read_to
     }
 
-    /// Reads the item at `start` again, which follows the grammar but may have been meant
+    /// Reads an item again that starts at `start` and follows the grammar but may have been meant
     /// otherwise. Returns the item's end if the new reading explains the text better: by fields
     /// that the block has, or by a comment or a function of another language. Otherwise, restores
     /// the items and problems and returns `None`.
@@ -160,7 +162,8 @@ impl<'w, 's> Recovery<'w, 's> {
             }
             Some([Item::Definition(_)]) => {
                 let mut new = self.problems.iter().skip(problems);
-                // If the new reading finds no mistake, the node that pest's reading gave is kept.
+                // The new reading is better only if it finds a mistake. Otherwise, the node that
+                // the generated parser made is kept.
                 let is_new = slips(self) > slips_before || self.problems.len() > problems;
                 is_new && new.all(|problem| problem.code == "pinhole::foreign_function")
             }
@@ -209,9 +212,9 @@ impl<'w, 's> Recovery<'w, 's> {
         parsed
     }
 
-    // The methods below look at the next tokens or take them.
+    // The methods below look at the next tokens or consume them.
 
-    /// Returns the token `ahead` tokens after the next one, without taking it. At the end of the
+    /// Returns the token `ahead` tokens after the next one, without consuming it. At the end of the
     /// text, this is an end token.
     fn peek(&mut self, ahead: usize) -> Token {
         while self.tokens.len() <= ahead {
@@ -271,7 +274,7 @@ impl<'w, 's> Recovery<'w, 's> {
         self.space_before(ahead).is_empty()
     }
 
-    /// Takes the next token and returns its span.
+    /// Consumes the next token and returns its span.
     fn bump(&mut self) -> Span {
         let span = self.here();
         if self.kind(0) != TokenKind::End {
@@ -299,7 +302,7 @@ impl<'w, 's> Recovery<'w, 's> {
         Span::new(self.id, token.start, token.end)
     }
 
-    /// Returns the empty span after the token that was taken last.
+    /// Returns the empty span after the token that was consumed last.
     fn behind(&self) -> Span {
         Span::new(self.id, self.last_end, self.last_end)
     }
@@ -312,9 +315,9 @@ impl<'w, 's> Recovery<'w, 's> {
         shorten(self.written(span))
     }
 
-    /// Returns whether a block starts at the token `ahead` tokens after the next one: `sphere {`,
-    /// `sphere Ball {` or `sphere for i`. A kind on a new line after that token starts another
-    /// block if the token itself is not a kind.
+    /// Returns whether a block starts at the token `ahead` tokens after the next one, as in `sphere
+    /// {`, `sphere Ball {` or `sphere for i`. If `Ball` ends a line and `sphere {` follows on the
+    /// next line, the block starts at `sphere`, not at `Ball`.
     fn is_head(&mut self, ahead: usize) -> bool {
         let name = ahead + 1;
         let ends = |this: &mut Self, at| this.is(at, "{") || this.is_repetition(at);
@@ -353,8 +356,8 @@ impl<'w, 's> Recovery<'w, 's> {
     // The methods below skip text after a mistake.
 
     /// Returns whether the next token ends every unfinished construct before it. Such a token is a
-    /// brace, `let`, the name of a field, the start of a block, or the first token of a line
-    /// (within a block, only a name).
+    /// brace, `let`, the name of a field, the start of a block, or the first token of a line.
+    /// Within a block, the first token of a line must be a name.
     fn is_boundary(&mut self) -> bool {
         let word = self.word(0);
         matches!(word, "" | "let" | "{" | "}")
@@ -378,7 +381,7 @@ impl<'w, 's> Recovery<'w, 's> {
         }
     }
 
-    /// Skips the contents of a block and its `}`; the `{` was taken already.
+    /// Skips the contents of a block and its `}`. The `{` must have been consumed already.
     fn skip_block(&mut self) {
         let mut braces = 1_usize;
         while braces > 0 && self.kind(0) != TokenKind::End {

@@ -45,7 +45,8 @@ impl<'s> Recovery<'_, 's> {
             let problems_before = self.problems.len();
             self.group("]");
             self.problems.truncate(problems_before);
-            // A field of an object, as in `Ball[3].center`, belongs to the same mistake.
+            // If a field of the object follows, as in `Ball[3].center`, it is included in the
+            // report.
             if self.is(0, ".") && self.is_adjacent(0) && self.is_name(1) {
                 self.bump();
                 self.bump();

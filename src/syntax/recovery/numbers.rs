@@ -84,9 +84,9 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Reports a number whose unit is wrong or separated by a space. A product with `factor`
-    /// converts the number to the unit `right` of the language. `whole` is the span of number and
-    /// unit, `behind` that of the unit.
+    /// Reports a number whose unit is wrong or separated by a space. Multiplying the number by
+    /// `factor` converts it to `right`, a unit of the language. `whole` is the span of the number
+    /// and its unit, and `behind` the span of the unit.
     fn with_unit(
         &mut self,
         number: &'s str,
@@ -110,8 +110,9 @@ impl<'s> Recovery<'_, 's> {
         };
         let text = scaled(number, factor).filter(|_| fits);
         let angle = |unit| ValueKind::Angle { number, unit };
-        // A number that needs no conversion is kept, so that further mistakes with it are reported
-        // in the same run.
+        // If the number needs no conversion, its value is returned rather than a value marked as
+        // bad. Further mistakes with it, such as a value that is too large, are then reported as
+        // well.
         let meant = match (fits && factor == 1.0, right) {
             (false, _) => ValueKind::Bad,
             (true, "deg") => angle(Unit::Degrees),
@@ -152,8 +153,8 @@ impl<'s> Recovery<'_, 's> {
             let place = if unit.starts_with('.') { span } else { behind };
             ("not a part of a number", None, place)
         };
-        // For `4x4`, the fix writes only 16, the product. A fix that is shorter than the written
-        // text is not safe.
+        // A fix that is shorter than the written text leaves out something that was written, so it
+        // is not safe. The fix of `4x4`, for example, is the product 16.
         let is_longer = |right: &String| right.len() >= written.len();
         let said = say::BAD_NUMBER.safe_if(right.as_ref().is_none_or(is_longer));
         let fix = right.map(|right| replace(span, right));

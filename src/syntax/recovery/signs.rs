@@ -1,5 +1,6 @@
 //! Collects needless separators, such as `,` and `;`, and the characters that start comments in
-//! other languages, such as `#`. A block has one report for each kind of them.
+//! other languages, such as `#`. If a block contains the same one several times, it is reported
+//! once.
 
 use super::{Recovery, numbers::unit_of};
 use crate::{

@@ -119,8 +119,8 @@ impl<'s> Recovery<'_, 's> {
         matches!(word, ")" | "]") && word != self.context.close && !is_end(self)
     }
 
-    /// Returns whether the next token continues the values that were read, `values`, rather than
-    /// ending them.
+    /// Returns whether the next token continues the list `values`, which was read so far, rather
+    /// than ending it.
     pub(super) fn goes_on(&mut self, values: &[Value<'s>]) -> bool {
         let (word, next, is_new) = (self.word(0), self.word(1), self.is_on_new_line(0));
         match self.kind(0) {
@@ -177,7 +177,7 @@ impl<'s> Recovery<'_, 's> {
             let first = this.signed();
             this.chain(first, PRODUCT, Self::signed)
         });
-        // This operator starts a condition such as `a > b ? c : d`. A condition that starts with
+        // A comparison starts a condition such as `a > b ? c : d`. A condition that starts with
         // `if` is handled in `operand`.
         let compares = matches!(self.word(0), ">" | "<" | "!" | "&" | "|" | "?" | "=");
         if compares && !self.is_on_new_line(0) && self.condition() {

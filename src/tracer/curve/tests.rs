@@ -10,7 +10,7 @@ use crate::reference::tightness::Tightness;
 /// Number of points along each side of the pixel.
 const POINTS: i32 = 300;
 
-/// The bounds of which [`Conic::doubtful_area`] is the least.
+/// Tightness of the three bounds whose minimum is [`Conic::doubtful_area`].
 #[derive(Default)]
 struct Found {
     any: Tightness,
@@ -94,8 +94,9 @@ proptest! {
         });
         let none = (f64::INFINITY, f64::NEG_INFINITY);
         let (low, high) = values.fold(none, |(low, high), value| (low.min(value), high.max(value)));
-        // An extreme inside the pixel is at most 1/80 from a point in x and in y, and the second
-        // derivatives are at most 2. The form differs there by at most 4/80².
+        // An extreme inside the pixel is at most 1/80 from one of the tested points in x and in y,
+        // and the second derivatives are at most 2. The form at that point differs from the extreme
+        // by at most 4/80².
         let apart = 4.0 / 6400.0;
         prop_assert!(range.low <= low && low - apart <= range.low, "{range:?}, not from {low}");
         prop_assert!(range.high >= high && high + apart >= range.high, "{range:?}, not to {high}");

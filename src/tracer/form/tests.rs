@@ -18,7 +18,8 @@ use crate::{
 
 type Sample = (u32, u32, DVec2);
 
-/// Returns the values of a board's three forms at a sample point, with their error bounds.
+/// Returns the values of a checkerboard's three linear forms at a sample point, with their error
+/// bounds. The forms are its inverse depth and the numerators of its two coordinates.
 fn values<T: Precision>(world: &World, (x, y, offset): Sample) -> [Ball<T>; 3] {
     let camera = &T::frame(&world.geometry).camera;
     let ray = camera.direction(&camera.sample_point(x, y, offset));

@@ -56,7 +56,7 @@ pub struct CellGrid {
 }
 
 impl Nearness {
-    /// The least value, which hides nothing, because every object's value is greater.
+    /// A nearness that is less than that of every object. As a depth limit, it hides no object.
     pub const NONE: Self = Self(0);
 
     /// Rounds a non-negative number up. Returns the greatest value for NaN and negative numbers.
@@ -79,8 +79,8 @@ impl Nearness {
 }
 
 impl Rectangle {
-    /// The rectangle that contains every other rectangle; an object without bounds has it. Its ends
-    /// are below `u32::MAX`, because [`share_of`](Self::share_of) adds one to them.
+    /// The rectangle that contains every other rectangle. It is used for objects without bounds.
+    /// Its ends are below `u32::MAX`, because [`share_of`](Self::share_of) adds one to them.
     pub const ALL: Self = Self {
         low: [0; 2],
         high: [u32::MAX - 1; 2],
@@ -134,11 +134,11 @@ impl CellGrid {
         grid
     }
 
-    /// Returns the unit that contains the coordinate `x`, or the nearest unit of the grid. Returns
-    /// the first unit for NaN.
+    /// Returns the unit of the grid that contains the coordinate `x`, or the nearest unit if `x` is
+    /// outside of the grid. Returns the first unit for NaN.
     #[inline]
     fn unit(&self, x: f64) -> u32 {
-        // Second-to-last unit of the grid, the maximum of the result. `CellGrid::high` is one unit
+        // Maximum of the result: the second-to-last unit of the grid. `CellGrid::high` is one unit
         // beyond the result and must still be a unit of the grid.
         const LAST: u32 = (1 << LEVELS) - 2;
         (((x - self.least) * self.per_unit) as u32).min(LAST)
@@ -188,7 +188,8 @@ impl CellGrid {
 mod tests {
     use super::*;
 
-    /// A grid that is coarser than the window allows would find too many objects for each ray.
+    /// Checks that the grid is as fine as the window allows. With a coarser grid, too many objects
+    /// would be found for each ray.
     #[test]
     fn a_window_has_nearly_all_units_along_its_longer_side() {
         for (x, y) in [(1.0, 1.0), (3e-6, 1e-6), (0.2, 50.0), (1e200, 1e199)] {
@@ -196,7 +197,8 @@ mod tests {
             let sides = [0, 1].map(|axis| f64::from(grid.high[axis] - grid.low[axis]));
             let all = f64::from(1 << LEVELS) / ROOT_MARGIN;
             for (side, reach) in sides.into_iter().zip([x, y]) {
-                // The window is widened by a unit on each side, and its ends are rounded.
+                // Up to 4 units of difference are allowed, because the window is widened by a unit
+                // on each side and its ends are rounded.
                 assert!(
                     (side - all * reach / x.max(y)).abs() <= 4.0,
                     "{x}, {y}: {side}"

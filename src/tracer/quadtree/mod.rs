@@ -33,7 +33,7 @@ pub struct Quadtree {
 }
 
 impl Quadtree {
-    /// Builds a quadtree over `items`. If `cancel` is set meanwhile, some of the objects are
+    /// Builds a quadtree over `items`. If `cancel` is set during the build, some of the objects are
     /// missing.
     pub fn new(grid: CellGrid, items: Vec<BoundedObject>, cancel: &AtomicBool) -> Self {
         let tree = Cells::new(items, cancel);
@@ -55,7 +55,7 @@ impl Quadtree {
     /// Returns the objects that rays through the rectangle `patch` of the view plane may hit, in
     /// file order. `behind` is called with an object that fills the rectangle, and returns the
     /// rounded inverse depth that the object reaches everywhere; objects entirely behind it are
-    /// left out. Returns `None` if too many objects are found, certainly more than `most`.
+    /// left out. Returns `None` if certainly more than `most` objects are found.
     pub fn within(
         &self,
         patch: &Patch,
@@ -69,17 +69,18 @@ impl Quadtree {
     }
 
     /// Returns the objects that rays through the rectangle `patch` of the view plane may hit, the
-    /// nearest first. Returns `None` if too many objects are found, certainly more than
-    /// [`OBJECTS_A_CELL`].
+    /// nearest first. Returns `None` if certainly more than [`OBJECTS_A_CELL`] objects are found.
     pub fn nearby(&self, patch: &Patch) -> Option<Vec<BoundedObject>> {
         let mut items = self.within(patch, OBJECTS_A_CELL, |_| Nearness::NONE)?;
         items.sort_by_key(|item| Reverse(item.nearest));
         Some(items)
     }
 
-    /// Calls `visit` with the objects of `nearby` that a ray may hit, as [`visit`](Self::visit)
-    /// does. `nearby` is the result of [`nearby`](Self::nearby) for a rectangle of the view plane
-    /// that contains the ray.
+    /// Calls `visit` with the objects of `nearby` that a ray may hit, the nearest first, until
+    /// `visit` fails. `visit` returns the rounded inverse depth of the nearest crossing so far;
+    /// objects entirely behind it are skipped. `nearby` is the result of [`nearby`](Self::nearby)
+    /// for a rectangle that contains the ray. Returns `None` if the direction is outside of the
+    /// window.
     #[inline]
     pub fn visit_nearby<E>(
         &self,

@@ -8,8 +8,8 @@ use super::{
     tree::{CellSquare, Cells},
 };
 
-/// Maximum number of cells that list one object. An object is no longer than the cells that list
-/// it, so that it intersects at most two of them along each axis.
+/// Maximum number of cells that list one object. The bounds of an object are shorter than the sides
+/// of the cells that list it. They therefore intersect at most two such cells along each axis.
 const MAX_CELLS: usize = 4;
 
 /// A search for the objects that rays through a rectangle may hit.
@@ -22,8 +22,8 @@ pub(super) struct Search<'a, F> {
     /// inverse depth that the object reaches everywhere in the rectangle. Objects entirely behind
     /// this depth are hidden.
     behind: F,
-    /// Rounded inverse depth that an object found so far reaches everywhere in the rectangle.
-    /// Objects entirely behind this depth are hidden.
+    /// Greatest rounded inverse depth that one of the objects found so far reaches everywhere in
+    /// the rectangle. Objects entirely behind this depth are hidden.
     hidden: Nearness,
     found: Vec<BoundedObject>,
 }

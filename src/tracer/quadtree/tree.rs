@@ -14,7 +14,7 @@ use crate::cancel;
 /// changes by at most 5 %.
 pub const OBJECTS_A_CELL: usize = 32;
 
-/// All cells of a quadtree, of which the first is the root, and the entries of the cells' lists.
+/// All cells of a quadtree, and the entries of their lists. The first cell is the root.
 #[derive(Debug)]
 pub(super) struct Cells {
     pub(super) cells: Vec<Cell>,
@@ -35,14 +35,14 @@ pub(super) struct Cell {
 }
 
 impl Cells {
-    /// Builds the tree of cells over `items`. If `cancel` is set meanwhile, some of the objects are
-    /// missing.
+    /// Builds the tree of cells over `items`. If `cancel` is set during the build, some of the
+    /// objects are missing.
     pub(super) fn new(items: Vec<BoundedObject>, cancel: &AtomicBool) -> Self {
         let mut tree = Self {
             cells: vec![Cell::EMPTY],
             entries: Vec::new(),
         };
-        // During the recursion, the end of `stack` has the objects of the current cell. For each
+        // During the recursion, the objects of the current cell are at the end of `stack`. For each
         // quarter, the quarter's objects are pushed onto the stack and removed afterwards.
         let mut stack = items;
         tree.divide(0, CellSquare::ROOT, &mut stack, 0, cancel);

@@ -3,11 +3,13 @@
 //!
 //! In: the world, and an area of its picture. Out: the parts of this area, one after the other. The
 //! method is Warnock's subdivision ("A hidden surface algorithm for computer generated halftone
-//! pictures", 1969): an area is quartered until it shows one colour, is a single pixel, or has so
-//! many candidates (objects that may be seen in it) that finding them costs more than it saves its
-//! samples. The samples of a pixel are then tested only against its candidates. If there are too
-//! many candidates, each sample is tested against all objects near it. Sampled and exact pictures
-//! share this method, because what is certain for a part holds for every ray through it.
+//! pictures", 1969): an area is quartered until it shows one colour or is a single pixel. The
+//! samples of a pixel are then tested only against its candidates, i.e. the objects that may be
+//! seen in it.
+//!
+//! Quartering also ends if an area has too many candidates: finding out where each is seen would
+//! take longer than tracing the area's samples one by one. Sampled and exact pictures share this
+//! method, because what is certain for a part holds for every ray through it.
 //!
 //! Areas belong to one fixed grid over the whole picture, whatever part of it is wanted, so that a
 //! pixel's candidates do not depend on this part.
@@ -25,22 +27,23 @@ use super::{
 };
 use crate::area::Area;
 
-/// Side of the squares of pixels with which quartering of a picture begins, in pixels. It is a
-/// power of two, so that quarters of a square are squares. It equals the maximum side of a block of
-/// pixels whose checkerboard is computed at once.
+/// Side of the squares into which a picture is divided first, in pixels. Each square is then
+/// quartered recursively. The side is a power of two, so that all quarters are squares. It equals
+/// the maximum side of a block of pixels whose checkerboard is computed at once.
 pub const GRID: u32 = checker_corners::SIDE as u32;
 
-/// Minimum number of samples per candidate object in an area of pixels that is quartered further.
-/// Measured: with 8, the time for 10³ and 10⁵ spheres changes by less than 10 %, but 3000 slivers
-/// with one sample per pixel take twice as long. With 2, the time rises by up to 25 %.
+/// Minimum ratio of samples to candidate objects in an area of more than four pixels. If the ratio
+/// is smaller, the area is not quartered further. Measured: with 8, the time for 10³ and 10⁵
+/// spheres changes by less than 10 %, but 3000 slivers with one sample per pixel take twice as
+/// long. With 2, the time rises by up to 25 %.
 const SAMPLES_A_CANDIDATE: f64 = 4.0;
 
-/// Cost of finding where one candidate object is seen within an area of pixels, in units of the
-/// time to test one object for a sample that is traced on its own. An area is quartered only if the
-/// cost for all candidates is less than that of tracing its samples. A sample tests the objects
-/// whose bounds contain it, and its search of the quadtree counts as one more test. Measured: with
-/// 80, 10⁴ spheres on 320×180 pixels take 10 % longer; with 200, they take 2 % longer on 640×360
-/// pixels.
+/// Time to find out where one candidate object is seen within an area of pixels. The unit is the
+/// time to test one sample against one object. An area with more than [`OBJECTS_A_CELL`] candidates
+/// is quartered only if this time for all candidates is at most that of tracing all samples one by
+/// one. Tracing a sample takes one unit for each object whose bounds contain it, and one unit for
+/// the search of the quadtree. Measured: with 80, 10⁴ spheres on 320×180 pixels take 10 % longer;
+/// with 200, they take 2 % longer on 640×360 pixels.
 const ASKED_A_CANDIDATE: f64 = 120.0;
 
 /// Subdivision of one picture into parts.
@@ -70,9 +73,9 @@ pub enum PicturePart<'a> {
         y: u32,
         /// The objects that may be seen in the pixel, in file order.
         candidates: &'a [VisibilityCandidate],
-        /// If the pixel shows only one checkerboard: which of its squares. `None` if something else
-        /// may be seen in the pixel, if the squares could not be determined, or if they are too
-        /// uncertain for sampling.
+        /// The squares that the pixel shows, if it shows only one checkerboard. `None` if something
+        /// else may be seen in the pixel, if the squares could not be determined, or if they are
+        /// too uncertain for sampling.
         checks: Option<&'a CheckerPixel>,
     },
     /// An area with so many candidates that finding where each is seen costs more than it saves.
@@ -140,15 +143,16 @@ impl<'a> Quartering<'a> {
         objects <= OBJECTS_A_CELL || samples * (1.0 + asked) >= ASKED_A_CANDIDATE * objects as f64
     }
 
-    /// Returns the maximum number of candidates with which an area is quartered. In a single pixel,
-    /// where quartering ends, this is one candidate per sample.
+    /// Returns the maximum number of candidates in an area that is quartered further. For a single
+    /// pixel, which cannot be quartered, it is the number of samples.
     fn most(&self, area: Area) -> usize {
         let shared = area.pixels() as f64 / SAMPLES_A_CANDIDATE;
         (self.samples * shared.max(1.0)) as usize
     }
 }
 
-/// One of the squares of pixels with which quartering begins, while it is being divided.
+/// The division of one square of the picture into parts, while it is under way. The square's side
+/// is at most [`GRID`] pixels.
 struct Cut<'a, 'b, V> {
     quartering: &'a Quartering<'a>,
     /// The part of the picture that is wanted.
@@ -208,9 +212,9 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
             _ => {}
         }
         let is_worth_more = candidates.len() <= self.quartering.most(area);
-        // Testing all candidates is no slower than tracing each sample on its own if there are no
-        // more candidates than a cell of the quadtree lists: a sample on its own would test the
-        // objects of a list.
+        // If there are at most as many candidates as a cell of the quadtree lists, testing all
+        // candidates is no slower than tracing each sample on its own. Such a sample would also
+        // test the objects of a cell.
         if !is_worth_more && candidates.len() > OBJECTS_A_CELL {
             return self.show(PicturePart::Crowded { area });
         }

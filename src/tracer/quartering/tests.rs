@@ -66,7 +66,7 @@ fn of_layers_only_those_that_are_seen_are_candidates() {
                     let few = match part {
                         PicturePart::OneColor { .. } => 0,
                         // All boards meet at the horizon, which lies between these two rows of
-                        // pixels.
+                        // pixels. Their pixels may have many candidates and are not checked.
                         PicturePart::Pixel { y: 31 | 32, .. } => 0,
                         PicturePart::Pixel { candidates, .. } => candidates.len(),
                         PicturePart::Crowded { .. } => usize::MAX,
@@ -96,8 +96,8 @@ fn what_a_wall_hides_is_not_found() {
         assert!(all_within(whole, usize::MAX, &mut found));
         assert_eq!(found.len() == 1, behind);
         assert!(behind || found.len() == 1001, "{}", found.len());
-        // Several cells of the quadtree list the wall. If it is in front of the spheres, it must
-        // hide them in each part of the picture, too.
+        // Several cells of the quadtree list the wall. In each part of the picture, the wall must
+        // hide the spheres if it is in front of them.
         for part in whole.tiles(7) {
             assert!(all_within(part, usize::MAX, &mut found));
             assert!(found.len() == 1 || !behind, "{part:?}");
@@ -105,9 +105,9 @@ fn what_a_wall_hides_is_not_found() {
     }
 }
 
-/// In a crowd of objects, `nearby` finds the objects around every square of the picture. If only
-/// these objects are tested, some pixels turn out to have a single colour, and all sample points
-/// get the same colour as by the quadtree.
+/// Checks the objects that `nearby` finds near a square of pixels in a crowd of objects. If only
+/// these objects are tested, each sample point must get the same colour as with a search of the
+/// quadtree. Some pixels must turn out to have a single colour.
 #[test]
 fn of_a_crowd_the_objects_nearby_are_enough() {
     let mut shapes = thousand_spheres(9.0);
@@ -139,8 +139,9 @@ fn of_a_crowd_the_objects_nearby_are_enough() {
     assert!(known > 100 && several > 100, "{known}, {several}");
 }
 
-/// Three hundred spheres, each as wide as a pixel, are seen in one pixel. With fewer samples than
-/// spheres, finding the candidates of each pixel would cost more than it saves.
+/// Checks that one pixel with three hundred spheres, each as wide as the pixel, is crowded if it
+/// has fewer samples than spheres. Finding the candidates of each pixel would then take longer than
+/// tracing the samples one by one.
 #[test]
 fn a_pixel_of_more_objects_than_samples_is_crowded() {
     let pixel = 10.0 / f64::from(SIZE);

@@ -26,8 +26,8 @@ pub struct PreparedPixel {
     pub(super) x: u32,
     pub(super) y: u32,
     pub(super) surfaces: Vec<PixelSurface>,
-    /// The lines that bound the surfaces, and the lines between the squares of checkerboards, for
-    /// all surfaces.
+    /// All lines of the pixel: those that bound the surfaces, and those between the squares of
+    /// checkerboards.
     pub(super) lines: Vec<ScaledLine>,
     /// Minimum difference of two inverse depths at which their order is certain. `None` if the
     /// surfaces are sorted from back to front, so that samples compare no depths.
@@ -61,8 +61,8 @@ pub(super) struct ColorCount {
 pub(super) struct PixelSurface {
     /// The object's index among the candidates.
     pub(super) index: usize,
-    /// Start and end of the object's boundaries in [`PreparedPixel::lines`]. Each form is ≥ 0 for
-    /// rays that hit the object.
+    /// Start and end of the object's boundary lines in [`PreparedPixel::lines`]. The linear form of
+    /// each line is ≥ 0 for rays that hit the object.
     pub(super) edges: [usize; 2],
     /// The silhouette of a sphere, if it may cross the pixel. The form is > 0 for rays that hit the
     /// sphere.
@@ -79,7 +79,7 @@ pub(super) enum ColorPattern {
     /// Two colours, separated by lines. In [`PreparedPixel::lines`], these lines come after the
     /// surface's edges; `end` is the index after the last one. A point shows the first colour if
     /// the product of the lines' forms is positive, and the second colour if it is negative. If
-    /// `odd` is set, the two colours change places.
+    /// `odd` is set, the two colours are exchanged.
     Lines { end: usize, odd: bool },
     /// The squares of a checkerboard. A division finds the square of each sample.
     Squares(CheckerForms),

@@ -21,15 +21,15 @@ use super::{
 };
 use crate::{area::Area, math::UP};
 
-/// Maximum error bound of a linear form of a checkerboard in a pixel. With a larger one, the
-/// pixel's samples are traced one by one, because products of the form's factors with numbers of
+/// Maximum error bound of a checkerboard's linear forms in a pixel. If a bound is larger, the
+/// pixel's samples are traced one by one. Otherwise, products of the forms' factors with indices of
 /// squares, which are below 2^53, might overflow.
 const MAX_ERROR: f64 = 1e250;
 
-/// Maximum number of lines between squares through a pixel at which the signs of the lines' forms
-/// give the colours. With more lines, a division finds the square of each sample. Measured: from 3
-/// to 12, the render time does not change; with division alone, figure 9.9, the picture of the
-/// assignment, takes 11 % longer.
+/// Maximum number of lines between squares in a pixel for which the colour of a sample is found
+/// from the sides of the lines on which the sample lies. With more lines, a division finds the
+/// square of each sample. Measured: from 3 to 12, the render time does not change; with division
+/// alone, figure 9.9, the picture of the assignment, takes 11 % longer.
 const MAX_LINES: usize = 6;
 
 /// Error of a preparation that fails, so that the pixel's samples must be traced one by one.
@@ -175,10 +175,11 @@ impl PreparedPixel {
         Ok(met)
     }
 
-    /// Returns how the colour of a checkerboard is found at the samples of a pixel. If the squares
-    /// in the pixel could be determined and are few, the colour is found from the signs of the
-    /// forms of the lines between them; otherwise, by a division for each sample. Fails if an error
-    /// bound exceeds [`MAX_ERROR`].
+    /// Returns the rule by which the colour of a checkerboard is found at the samples of a pixel.
+    /// If the pixel shows only few squares, the colour is found from the signs of linear forms, one
+    /// for each line between squares. If there are many squares, or if they could not be
+    /// determined, a division finds the square of each sample. Fails if an error bound exceeds
+    /// [`MAX_ERROR`].
     fn pattern(
         &mut self,
         board: &Checkerboard<f64>,
@@ -197,10 +198,11 @@ impl PreparedPixel {
         }
     }
 
-    /// Adds those lines between a board's squares that may cross the pixel to the pixel's lines.
-    /// Returns how the colours are found: from the signs of these lines. If there are more than
-    /// [`MAX_LINES`] lines, adds none, and the colours are found by a division for each sample.
-    /// `x0` to `x1` and `z0` to `z1` are the ranges of the squares in the pixel.
+    /// Adds the lines between a board's squares to the pixel's lines, except those that certainly
+    /// do not cross the pixel. Returns the rule by which the colours are found from the signs of
+    /// these lines. If there are more than [`MAX_LINES`] lines, adds none, and a division finds the
+    /// square of each sample. `x0` to `x1` and `z0` to `z1` are the ranges of the squares in the
+    /// pixel.
     fn lines(
         &mut self,
         squares: &CheckerForms,
@@ -224,8 +226,9 @@ impl PreparedPixel {
                     Side::Below => {}
                     Side::Both => {
                         self.lines.push(line.line());
-                        // `odd` is the parity at points where all forms of the pattern are
-                        // positive. Each form that is negative at a point changes the parity there.
+                        // `odd` is the parity at points where the forms of all added lines are
+                        // positive. At these points, each added line changes the parity, so it is
+                        // negated.
                         odd = !odd;
                     }
                     Side::Unknown => return Err(Hard),

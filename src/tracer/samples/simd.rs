@@ -3,9 +3,9 @@
 //!
 //! In: a prepared pixel, and a chunk of its samples. Out: what each sample sees, and how often each
 //! colour is seen. For each surface in turn, its boundary forms are evaluated at all samples, then
-//! its colour pattern and its depth. A sample is uncertain if a form's value is within its error
-//! bound of 0, or if two depths differ by at most their errors. Uncertain samples are traced again
-//! one by one.
+//! its colour pattern and its depth. A sample is uncertain if a form's value differs from 0 by at
+//! most the form's error bound, or if two depths differ by at most their errors. Uncertain samples
+//! are traced again one by one.
 
 use multiversion::multiversion;
 
@@ -166,9 +166,10 @@ fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: 
         let double = 2.0 * UP * inverse;
         let square = |n: [f64; 3], own: f64| {
             let value = (n[0] * x + n[1] * y + n[2]) * inverse;
-            // With N' and ℓ' the true values of the forms, |N'/ℓ' − N/ℓ| ≤ (|N' − N| + |N/ℓ|·|ℓ' −
-            // ℓ|)/ℓ'. ℓ' is at least ℓ/2, because a sample is marked uncertain unless ℓ exceeds
-            // twice its error bound.
+            // Let N/ℓ be the computed coordinate, and let N' and ℓ' be the true values of its
+            // numerator and denominator. Then |N'/ℓ' − N/ℓ| ≤ (|N' − N| + |N/ℓ|·|ℓ' − ℓ|)/ℓ'. ℓ' is
+            // at least ℓ/2, because a sample is marked uncertain unless ℓ exceeds twice its error
+            // bound.
             let error = (own + value.abs() * rad) * double + (value.abs() + 1.0) * LOCAL_ROUNDING;
             let middle = value - 0.5;
             let rounded = middle + ROUND;

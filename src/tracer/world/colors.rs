@@ -12,7 +12,8 @@ use crate::{color::Color, scene};
 pub(super) struct Colors {
     /// The distinct colours: those of the objects in file order, then the background.
     pub palette: Vec<Color>,
-    /// For each object, the palette indices of its colour and of a checkerboard's second colour.
+    /// For each object, the palette indices of its two colours. They are equal unless the object is
+    /// a checkerboard.
     pub of_objects: Vec<[u32; 2]>,
 }
 

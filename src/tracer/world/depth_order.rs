@@ -1,11 +1,13 @@
 //! The depth order of two crossings, and whether they lie in one surface and are equal.
 //!
 //! In: two crossings of one ray. Out: the order of their inverse depths, or doubt if rounding
-//! errors leave it uncertain. Between two crossings in one surface, the order of computed depths
-//! would be uncertain at every sample point, and forms of higher precision take long to prepare. If
-//! the order is uncertain, the objects' planes are therefore compared by the numbers of the scene,
-//! without rounding. The near and the far plane, which are not given by numbers of an object, are
-//! compared by their forms.
+//! errors leave it uncertain.
+//!
+//! If two crossings lie in one surface, their computed depths leave the order uncertain at every
+//! sample point. Only the highest precision would treat them as equal, and objects take long to
+//! prepare in it. Whether two objects lie in one plane is therefore decided from the numbers of the
+//! scene, without rounding. The near and the far plane, which are not given by numbers of an
+//! object, are compared by their linear forms.
 
 use std::cmp::Ordering;
 
@@ -52,8 +54,9 @@ pub(super) fn order_to_clip<T: Real>(
     // plane, unless the two planes are equal. It is therefore enough to test whether the surface
     // lies in either plane.
     let at = (index, crossing.part);
-    // Planes may differ only after hundreds of bits. Only the highest precision finds this out, but
-    // preparing objects in it takes long, so that it is tried last.
+    // The numbers of two different planes may agree in their first hundreds of bits. Only the
+    // highest precision distinguishes such planes. It is tried last, because preparing objects in
+    // it takes long.
     if is_in_clip::<Double>(geometry, at) && is_in_clip::<Big>(geometry, at) {
         return Ok(Ordering::Equal);
     }

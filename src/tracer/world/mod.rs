@@ -86,7 +86,7 @@ impl World {
     ///
     /// # Panics
     ///
-    /// May panic if a condition is broken; otherwise the picture is wrong.
+    /// If a condition is broken, this function may panic. If it does not, the picture is wrong.
     pub fn new(scene: &Scene) -> Self {
         Self::build(scene, Faces::Seen, reach(scene), &cancel::NEVER)
     }
@@ -162,8 +162,8 @@ impl World {
     }
 
     /// Returns the palette index of the colour that is seen at a sample point, as
-    /// [`slot_at`](World::slot_at) does. It is faster if the objects near the point are given in
-    /// `nearby`, as [`nearby`](super::nearby) returns them.
+    /// [`slot_at`](World::slot_at) does. The search is faster if `nearby` contains the objects near
+    /// the point, as [`nearby`](super::nearby) returns them.
     #[inline]
     pub(crate) fn slot_near(
         &self,
@@ -193,7 +193,7 @@ impl World {
         seen.map(|piece| self.owner(piece))
     }
 
-    /// Returns the index in the file of the object from which a prepared object comes. A prepared
+    /// Returns the index in the file of the object to which a prepared object belongs. A prepared
     /// object is a whole object of the file, or one face of a box.
     pub(super) fn owner(&self, piece: usize) -> usize {
         self.pieces.owner(piece)
@@ -217,8 +217,8 @@ impl World {
         let among = || among.clone();
         let (mut seen, is_sure) = first_certain!(&self.geometry, point, |r| self.seen(r, among()));
         if !is_sure {
-            // The highest precision has decided. It counts an object as hit if it cannot
-            // distinguish the ray from one that hits the object, even if the ray is outside of the
+            // The highest precision has decided. In it, an object is hit if the ray cannot be
+            // distinguished from a ray that hits the object, even if the ray is outside of the
             // object's bounds in the quadtree. Some callers pass only objects whose bounds contain
             // the ray, and others pass all objects. To give all callers the same answer, objects
             // whose bounds do not contain the ray are left out.
@@ -233,8 +233,8 @@ impl World {
     }
 
     /// Returns which of the objects `among`, which are in file order, is seen at a point (`None`
-    /// for the background), and whether the answer is certain. If not, the highest precision
-    /// decided.
+    /// for the background), and whether the answer is certain. An uncertain answer was decided in
+    /// the highest precision.
     pub(super) fn object_among(
         &self,
         point: &PicturePoint,
@@ -248,7 +248,8 @@ impl World {
         (nearest, is_sure)
     }
 
-    /// Returns the palette indices of an object's colour and of a checkerboard's second colour.
+    /// Returns the palette indices of an object's two colours. They are equal unless the object is
+    /// a checkerboard.
     pub fn slots(&self, object: usize) -> [usize; 2] {
         self.colors.of_objects[object].map(|slot| slot as usize)
     }
@@ -258,7 +259,8 @@ impl World {
         self.palette().len() - 1
     }
 
-    /// Returns the number of objects. A box with coloured faces counts once for each face.
+    /// Returns the number of objects. Each face of a box with coloured faces is an object of its
+    /// own.
     pub fn object_count(&self) -> usize {
         self.geometry.objects.len()
     }
@@ -314,7 +316,8 @@ impl World {
     }
 
     /// Returns the nearest crossing between the near and the far plane with the objects `among`,
-    /// which are in file order. Of crossings at equal depths, returns that of the first object.
+    /// which are in file order. If several crossings have equal depths, returns that of the first
+    /// object.
     #[inline]
     pub(super) fn seen<T: Precision>(
         &self,
@@ -325,7 +328,7 @@ impl World {
         self.with_color(r, nearest)
     }
 
-    /// Returns the nearest crossing together with which of the object's two colours is seen.
+    /// Adds to the nearest crossing which of the object's two colours the ray sees.
     #[inline]
     fn with_color<T: Precision>(
         &self,
@@ -393,8 +396,8 @@ impl World {
     }
 
     /// Returns the nearest crossing with an object between the near and the far plane, and whether
-    /// it is the object's second crossing. `first` is its first crossing. Returns `None` if neither
-    /// crossing lies between the planes.
+    /// it is the object's second crossing. `first` is the object's first crossing. Returns `None`
+    /// if neither crossing lies between the planes.
     #[inline]
     fn clip<T: Precision>(
         &self,

@@ -3,7 +3,7 @@
 //!
 //! In: the numbers of the scene. Out: the camera, the near and the far plane, and the objects, in
 //! the requested precision. In precisions higher than `f64`, objects are prepared when they are
-//! first requested. A decision that one precision leaves uncertain, by its error bounds, is made in
+//! first requested. If the error bounds of one precision leave a decision uncertain, it is made in
 //! the next precision. The highest precision decides everything.
 
 use glam::{DVec2, DVec3};
@@ -23,8 +23,8 @@ use crate::{
 
 /// Evaluates `$answer` for a ray's direction `$r`, in one precision after the other, until the
 /// answer is certain. Yields the answer, and whether it was certain before the highest precision.
-/// In the highest precision, numbers that cannot be distinguished count as equal, so that there is
-/// always an answer.
+/// The highest precision always gives an answer, because it treats numbers as equal if it cannot
+/// distinguish them.
 macro_rules! first_certain {
     ($geometry:expr, $point:expr, |$r:ident| $answer:expr) => {{
         let (geometry, point): (&Geometry, &PicturePoint) = ($geometry, $point);
@@ -51,8 +51,8 @@ pub(super) use first_certain;
 pub enum Numbers {
     /// A sphere's centre and radius.
     Sphere(DVec3, f64),
-    /// All numbers of any other shape. If the object is a single face of a box, also the face's
-    /// number.
+    /// All numbers of any other shape, and the number of the face if the object is a single face of
+    /// a box.
     Other(Box<(Shape, Option<u8>)>),
 }
 

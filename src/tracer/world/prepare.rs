@@ -29,8 +29,8 @@ const OBJECTS_WORTH_THREADS: usize = 1 << 10;
 const BLOCK: usize = 1 << 13;
 
 /// Prepares the geometry of a scene, and the quadtree over its objects, for rays through points of
-/// the picture plane at most `reach` pixels from the picture's centre. If `cancel` is set
-/// meanwhile, the result is incomplete and must not be used.
+/// the picture plane at most `reach` pixels from the picture's centre. If `cancel` is set during
+/// the preparation, the result is incomplete and must not be used.
 pub fn prepare(
     scene: &Scene,
     pieces: &Pieces,
@@ -73,8 +73,8 @@ pub fn prepare(
         objects.append(&mut more);
         items.extend(seen.drain(..).flatten());
     }
-    // The quadtree is built before the rest of the geometry, which then reuses the memory of the
-    // lists that the quadtree has freed.
+    // The quadtree is built first, because it frees large lists during the build. The rest of the
+    // geometry then reuses their memory.
     let quadtree = Quadtree::new(grid, items, cancel);
     let rest = if cancel::is_set(cancel) {
         &[]

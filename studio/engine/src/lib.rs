@@ -1,5 +1,5 @@
-//! The engine in the browser: exchanges the messages that `docs/protocol.md` describes, as texts
-//! that a web worker passes to and from the page.
+//! The engine in the browser. It exchanges the messages that `docs/protocol.md` describes with the
+//! page. A web worker runs the engine and passes the messages on.
 
 use lsp_server::{Message, Notification};
 use pinhole::{
@@ -18,7 +18,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 #[wasm_bindgen]
 pub struct Engine {
     server: Server,
-    /// The picture's file that is being rendered for a download.
+    /// Download whose picture is being rendered to a file.
     download: Option<Sliced>,
 }
 
@@ -88,8 +88,8 @@ impl Engine {
 }
 
 impl Engine {
-    /// Stops rendering the picture's file if the message cancels it. Returns the answer to the
-    /// request of the file; `None` if the message cancels something else.
+    /// Stops the download if `message` is the notification that cancels it. Returns the error
+    /// response to the request for the download; `None` if `message` is anything else.
     fn cancelled(&mut self, message: &Message) -> Option<Message> {
         let Message::Notification(Notification { method, params }) = message else {
             return None;

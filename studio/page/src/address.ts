@@ -1,5 +1,6 @@
-// The fragment of the page's address: `key=value` pairs joined by `&`. Browsers never send it. This
-// module is loaded before all others, so that no other module sees the token in the address.
+// The fragment of the page's address: `key=value` pairs joined by `&`. It may contain the token,
+// which browsers then do not send to any server. This module must be loaded first: it removes the
+// token from the address before other modules read it.
 
 import { remember, remembered } from "./dom";
 
@@ -26,7 +27,8 @@ export function takeToken(): string | null {
   return token;
 }
 
-/** Token by which the host recognizes this tab. It survives a reload; each tab has its own. */
+/** Access token of this tab, by which the host recognizes it. Each tab has its own token, which
+ * survives a reload. */
 export const session = {
   token: remembered(TOKEN, "sessionStorage"),
   /** Whether the token was taken from the address, not from the host or the tab's storage. */
@@ -35,7 +37,8 @@ export const session = {
   /** Stores a token that the host has sent or that was in the page's address. */
   keep(token: string, from: "host" | "address"): void {
     Object.assign(this, { token, isFresh: from === "address" });
-    // If nothing can be stored, a reload requires opening the printed address again.
+    // If the browser refuses to store the token, the page works until it is reloaded. Then the user
+    // must open the printed address again.
     remember(TOKEN, token, "sessionStorage");
   },
 };

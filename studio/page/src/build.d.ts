@@ -1,4 +1,5 @@
-// Declarations for the build: the module that `npm run site` makes from studio/engine, and texts.
+// Types of what the build provides: the module that `npm run site` makes from studio/engine, and
+// the texts of scenes.
 
 declare module "pinhole-engine" {
   export class Engine {

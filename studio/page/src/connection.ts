@@ -10,11 +10,13 @@ import { Refusal } from "./protocol";
 interface Wire { send(text: string): void }
 
 /** Reason why there is no connection. After `lost`, `ended` (by the host) and `failed` (a worker),
- * the page reconnects by itself. After the others, an address of the host must be opened. */
+ * the page reconnects by itself. After any other reason, the user must open an address that the
+ * host has printed. */
 type Closed = "lost" | "ended" | "failed" | "keyless" | "unknown" | "restarted" | "late" | "twice";
 const TRIED_AGAIN: Closed[] = ["lost", "ended", "failed"];
 
-/** State of the connection; `silent` means lost, after all pauses in `PAUSES` are used up. */
+/** State of the connection. `silent` means that the connection is lost and that as many attempts to
+ * reconnect have failed as `PAUSES` has entries. */
 export type ConnectionState = "connecting" | "open" | "silent" | Closed;
 
 /** Opens a channel. Calls `opened` with it, `receive` for each text, and `closed` at its end. */
@@ -23,7 +25,8 @@ type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void,
 
 /** Pauses before attempts to reconnect, in ms. They grow to spare the machine; the last repeats. */
 const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
-/** Silence of the server, in ms, after which the page sends a test request. */
+/** Silence of the server, in ms, after which the page sends a test request. A shorter time would
+ * cause more requests; a longer one would delay the notice that the server does not reply. */
 const QUIET = 700;
 const HANGING = 1200; // wait for the reply, in ms, after which it is reported as late
 
@@ -52,8 +55,9 @@ class Connection implements Transport {
   private timer: ReturnType<typeof setTimeout> | undefined;
   /** Number of the latest attempt to connect. Events of earlier attempts are ignored. */
   private current = 0;
-  /** Time of the last message. `asked` is the time of a test request without a reply yet, or 0. */
+  /** Time of the last message from the server, in ms. */
   private heard = 0;
+  /** Time of the test request that has no reply yet, in ms; 0 if there is none. */
   private asked = 0;
   private hangs = false;
 
@@ -97,18 +101,21 @@ class Connection implements Transport {
     this.wire.send(text);
   }
 
-  /** Sets the language client's handler. It gets all messages except answers to `request`. */
+  /** Sets the language client's handler. The handler gets all messages except answers to `request`.
+   */
   subscribe(handler: (text: string) => void): void { this.handle = handler; }
   unsubscribe(): void { this.handle = () => {}; }
 
-  /** Sends a request. Rejects with the server's `Refusal`, or an `Error` if lost or cancelled. */
+  /** Sends a request. Rejects with a `Refusal` if the server refuses it, and with another error if
+   * the connection is lost or `wanted` is aborted. */
   async request<Result>(method: string, params: unknown, wanted?: AbortSignal): Promise<Result> {
-    // If there is no server, `ready` never resolves.
+    // Without a connection, `ready` may never resolve, so the request is rejected at once.
     if (this.wire === null) throw new Error(NO_CONNECTION);
     const id = OWN + ++this.requests;
     return new Promise<Result>((resolve, reject) => {
       this.waiting.set(id, { resolve, reject });
-      // Before `ready` resolves, the connection may be lost, or the request aborted.
+      // While the request waits for `ready`, the connection may be lost, or the request aborted. It
+      // is then no longer in `waiting`, and is not sent.
       this.ready().then(() => {
         if (!this.waiting.has(id)) return;
         this.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
@@ -122,7 +129,8 @@ class Connection implements Transport {
   }
 
   private receive(text: string): void {
-    // An open channel is not enough: only a message shows that the server works again.
+    // The pauses between attempts to reconnect start anew. This is done at the first message, not
+    // when the channel opens, because a failing server may accept connections.
     this.attempts = 0;
     this.heard = performance.now();
     this.asked = 0;

@@ -9,13 +9,15 @@ import { byId, create, createButton } from "./dom";
 import { editor } from "./editor";
 import { setText, visible } from "./visible";
 
-/** Shows diagnostics and fixes in one update, because a second one would close an open tooltip. */
+/** Shows the diagnostics of the current text together with their fixes. A separate update for the
+ * fixes would close an open tooltip. Diagnostics of an older text are ignored. */
 export async function publishDiagnostics(published: PublishDiagnosticsParams): Promise<void> {
   const file = editor.client.workspace.getFile(published.uri);
   const { doc } = editor.view.state;
   if (file === null || file.doc !== doc || (published.version !== undefined
     && published.version !== file.version)) return;
-  // During a drag, there are usually neither new diagnostics nor old marks to remove.
+  // Without diagnostics, and without marks to remove, nothing changes, so the fixes are not
+  // requested. This is the usual case during a drag.
   const isRight = published.diagnostics.length === 0;
   if (isRight && !hasMarks) return;
   const actions = isRight ? [] : await editor.ask<CodeAction[]>("textDocument/codeAction",
@@ -24,7 +26,8 @@ export async function publishDiagnostics(published: PublishDiagnosticsParams): P
   if (editor.view.state.doc === doc) show(published.diagnostics, actions ?? []);
 }
 
-/** Whether the editor may have marks of diagnostics, even if their text was deleted. */
+/** Whether the last update gave diagnostics to the editor. Marks of diagnostics may then have to be
+ * removed. */
 let hasMarks = false;
 
 function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
@@ -55,14 +58,15 @@ const keyOf = ({ message, range }: ServerDiagnostic) => JSON.stringify([message,
 function fix(action: CodeAction): Action {
   const { doc } = editor.view.state;
   const edits = action.edit?.changes?.[editor.uri] ?? [];
-  // A fix may insert a made-up value. This is its range within the text of the first edit.
+  // If the fix inserts an example value, `value` is its range within the text of the first edit.
   const [value]: [number, number][] = action.data?.values ?? [];
   return {
     name: visible(action.title),
     apply(view) {
       // The edits fit only the checked text. If it has changed, new diagnostics will arrive.
       if (view.state.doc !== doc) return;
-      // The made-up value is selected, so that typing replaces it. Its text is ASCII: a byte each.
+      // The example value is selected, so that typing replaces it. Its range is in bytes, which are
+      // characters here, because the text of such a fix is ASCII.
       const at = edits[0] ? editor.offset(edits[0].range.start) : 0;
       const made = value && { selection: { anchor: at + value[0], head: at + value[1] } };
       const changes = editor.changes(edits);
@@ -121,7 +125,8 @@ function item({ severity, message, actions }: Diagnostic, from: number, to: numb
   return item;
 }
 
-/** Applies the first fix of the problem at the cursor, or else of the first problem with one. */
+/** Applies the first fix of the problem at the cursor. If this problem has no fix, applies the
+ * first fix in the text. */
 export const fixKey: KeyBinding = {
   key: "Mod-.",
   run(view) {

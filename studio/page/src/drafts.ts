@@ -1,6 +1,7 @@
-// Drafts: unsaved texts, stored during typing and offered again after a reload, a crash or loss of
-// the host. Each page has its own key, or the key of a draft that it continues without a host. The
-// browser stores drafts until the host has stored them, or always if there is no host.
+// Drafts: unsaved texts, stored while the user types. They are offered again after a reload, a
+// crash or the end of the host. Each page stores its draft under its own key. If a draft is
+// restored before the host has answered, the page continues it under the draft's key. The browser
+// keeps a draft until the host has stored it, or always if there is no host.
 
 import { createStore, del, delMany, set, values } from "idb-keyval";
 import { connection, isServed } from "./connection";
@@ -11,11 +12,14 @@ import { Refusal, type Draft } from "./protocol";
 import { say } from "./status";
 import { setText } from "./visible";
 
-/** Delay before a changed text is stored, in ms. It limits how much typing a crash can lose. */
+/** Delay before a changed text is stored, in ms. A crash can lose what was typed during this time;
+ * with a shorter delay, the text would be sent more often. */
 const BEHIND = 500;
-/** Maximum number of drafts in the browser. If there are more, the oldest are deleted. */
+/** Maximum number of drafts in the browser. If there are more, the oldest are deleted. Each open
+ * page stores one draft, and users rarely have more than a few pages open. */
 const MOST = 10;
-/** Maximum number of drafts offered at once, to save room. Others follow after these. */
+/** Maximum number of drafts offered at once, since each needs a row of the page. When the user has
+ * restored or discarded one, the next is offered. */
 const OFFERED = 3;
 
 const store = createStore("pinhole-drafts", "drafts");
@@ -25,9 +29,10 @@ const freshId = () => `${Date.now()} ${Math.random()}`;
 let id = freshId();
 /** Whether a draft is stored under the key of this page. */
 let isKept = false;
-/** Drafts that must still be stored, by key. If it is null, the stored draft must be deleted. */
+/** Drafts that must still be stored, by key. Null stands for a draft that must be deleted. */
 const due = new Map<string, Draft | null>();
-/** Draft restored last. It stays stored until it is saved, so that Undo does not lose it. */
+/** Last draft that the user has restored. Its stored copy is kept until its text is saved to the
+ * file, since Undo can remove the text from the editor. */
 let restored: Draft | null = null;
 /** Drafts that were offered and neither restored nor discarded yet, the newest first. */
 let offers: Draft[] = [];
@@ -40,7 +45,7 @@ for (const type of ["beforeunload", "pagehide"]) addEventListener(type, () => vo
 files.onLeave = leave;
 files.onSaved = text => void keepDraft(text);
 
-/** Plans to store the changed text. */
+/** Stores the changed text after a delay. */
 export function draftChanged(): void { timer ||= setTimeout(() => void keepDraft(), BEHIND); }
 
 /** Stores the text if it is unsaved. Deletes offered drafts equal to this text or to `saved`. */
@@ -53,7 +58,8 @@ async function keepDraft(saved?: string): Promise<void> {
   const isNew = isUnsaved && textToSave !== restored?.text;
   if (isNew || isKept) due.set(id, isNew ? newDraft() : id === restored?.id ? restored : null);
   isKept = isNew;
-  // Until the server has the scene, an offered draft stays even if it is equal to the text.
+  // Before the server has opened the scene, the text in the editor may still be replaced, so an
+  // offered draft is kept even if it is equal to this text.
   const there = [saved, editor.uri === "" ? undefined : textToSave];
   for (const it of offers) if (there.includes(it.text)) forget(it);
   await Promise.all([...due].map(async ([id, draft]) => {
@@ -63,7 +69,8 @@ async function keepDraft(saved?: string): Promise<void> {
       due.delete(id);
       if (isServed) await del(id, store);
     } catch (error) {
-      // Without a connection, the draft is sent to the host later.
+      // Only a refusal is reported. If the connection is lost, the draft stays in `due` and is sent
+      // later.
       if (error instanceof Refusal) say(`No draft is kept: ${error.message}`, "warning");
     }
   }));
@@ -106,7 +113,8 @@ function answer(draft: Draft, isRestored: boolean): void {
   if (isRestored) {
     due.delete(draft.id);
     restored = draft;
-    // The host may have this draft already. Once connected, it gets changes under the same key.
+    // If the host has not answered yet, it may have a copy of this draft. The page continues the
+    // draft under the same key, so that later changes replace the copy.
     if (!files.isTold) id = draft.id;
     files.restore(draft.text, draft.base, draft.name);
   }

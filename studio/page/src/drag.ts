@@ -10,7 +10,8 @@ import { isSuperseded, Refusal, type Dragged, type Point } from "./protocol";
 import { tools } from "./tools";
 import { setText } from "./visible";
 
-/** A held handle and its point at the press. `object` is null for a handle of the camera. */
+/** A handle that the user drags. `at` is its point in the picture when the drag began, and `object`
+ * is null if the handle belongs to the camera. */
 export interface Held { object: number | null; handle: string; at: Point }
 
 const BROKEN = "The text has errors. Mend them, then the picture can be changed by hand.";
@@ -57,7 +58,8 @@ export class Drag {
   private readonly released = new Promise<void>(resolve => (this.letGo = resolve));
   private readonly done = new Promise<void>(resolve => (this.settle = resolve));
 
-  /** `hold` returns what is dragged, or a promise of it if that is known only after the press. */
+  /** Begins a drag at the point `press`. `hold` returns the dragged handle, or a promise of it if
+   * the server must first find it. */
   constructor(private readonly press: Point, hold: () => Promise<Held | null> | Held) {
     this.target = press;
     frames.dragging = this;
@@ -80,7 +82,8 @@ export class Drag {
 
   by([dx, dy]: Point): void { this.to([this.target[0] + dx, this.target[1] + dy]); }
 
-  /** Finishes the drag after the edit for the last point. Does not wait for pictures. */
+  /** Finishes the drag after the edit for the last point. Does not wait until the new picture is
+   * rendered. */
   end(): void {
     this.letGo();
     void this.work.then(() => this.finish());
@@ -101,7 +104,9 @@ export class Drag {
     const { gesture, gesture: { base }, press, uri } = this;
     if (!this.isOpen) editor.openAside(uri, base);
     this.isOpen = true;
-    // An object's handle keeps its offset from the pointer; the camera follows the movement.
+    // A handle that was pressed beside its centre must not jump to the pointer, so it is moved by
+    // the same vector as the pointer. For the camera, the server gets the first and the latest
+    // point.
     const to = object === null ? place : [at[0] + place[0] - press[0], at[1] + place[1] - press[1]];
     const about = { textDocument: { uri }, object, handle, from: press, to, along: tools.along,
       step: tools.step };

@@ -20,7 +20,8 @@ import { sceneHighlighting, sceneLanguage } from "./language";
 import { isSuperseded } from "./protocol";
 import { sanitized } from "./sanitize";
 
-/** Time limit to compare texts, in ms, so that no pause is felt. After it, results get coarser. */
+/** Time limit for comparing texts, in ms. After this time, the rest is compared less finely. A much
+ * longer time would be felt as a pause. */
 const DIFF_TIME = 100;
 
 /** Matches unpaired surrogates. UTF-8, in which files and messages are written, has none. */
@@ -36,7 +37,8 @@ const wholeCharacters = EditorState.transactionFilter.of(transaction => {
   return changes.length === 0 ? transaction : [transaction, { changes, sequential: true }];
 });
 
-/** Replaces selected lines by typed text. A browser would add styles, which the CSP forbids. */
+/** Replaces selected lines by typed text. If the browser replaced them, it would add inline styles,
+ * which the content security policy (CSP) forbids. */
 const replacedLines = EditorView.domEventHandlers({
   beforeinput({ inputType, data, isComposing }, view) {
     const { state } = view;
@@ -100,7 +102,8 @@ class SceneEditor {
 
   constructor(parent: HTMLElement, nonce: string | undefined) {
     this.client = new SceneClient({
-      // A busy machine may answer slowly, so wait a minute; `connection` reports losses.
+      // A request fails after this time, in ms. It is long, because a busy machine may answer
+      // slowly; a lost connection is noticed elsewhere.
       timeout: 60_000,
       sanitizeHTML: sanitized,
       unhandledNotification: (_, method, params) => this.onNotification(method, params),
@@ -111,7 +114,8 @@ class SceneEditor {
       parent,
       extensions: [
         nonce === undefined ? [] : EditorView.cspNonce.of(nonce),
-        // Text typed before the scene has arrived would be lost.
+        // The editor cannot be edited before the scene has arrived, because the scene replaces its
+        // text.
         EditorState.readOnly.of(true),
         wholeCharacters,
         lineNumbers(), lintGutter(), highlightActiveLine(), highlightActiveLineGutter(),
@@ -132,7 +136,7 @@ class SceneEditor {
           ...searchKeymap, ...historyKeymap, ...defaultKeymap,
         ]),
         EditorView.updateListener.of(it => {
-          // Without a connection, the server gets the change later.
+          // Without a connection, the change is sent after the page has connected again.
           if (it.docChanged && connection.state === "open") this.client.sync();
           this.onUpdate(it);
         }),
@@ -153,7 +157,8 @@ class SceneEditor {
     return connection.request(method, { textDocument: { uri: this.uri }, ...params });
   }
 
-  /** Sends a request about the scene. Resolves to null if it fails or the text has errors. */
+  /** Sends a request about the scene. Resolves to null if the request fails, or if the answer is
+   * null because the text has errors. */
   async ask<Result>(method: string, params: object): Promise<Result | null> {
     try {
       return await this.request<Result | null>(method, params);
@@ -163,7 +168,8 @@ class SceneEditor {
     }
   }
 
-  /** Sends a request about the scene. Resolves to null also if the text has changed meanwhile. */
+  /** Sends a request about the scene. Resolves to null if the request fails, or if the text has
+   * errors or is changed before the answer arrives. */
   async askCurrent<Result>(method: string, params: object): Promise<Result | null> {
     const { doc } = this.view.state;
     const answer = await this.ask<Result>(method, params);
@@ -197,8 +203,9 @@ class SceneEditor {
       Prec.highest(EditorState.readOnly.of(false)), this.client.plugin(this.uri, "pinhole")]) });
   }
 
-  /** Replaces the text by changing only what differs, so that the cursor stays. A pure insertion or
-   * deletion is moved to the start of its line if possible, so that it covers whole blocks. */
+  /** Replaces the text by changing only what differs, so that the cursor stays. If possible, a pure
+   * insertion or deletion is moved to the start of its line: then it covers the lines of a block,
+   * not the end of one block and the start of the next. */
   replace(content: string): void {
     const [old, text] = [this.text, withLf(content)];
     let end = 0;

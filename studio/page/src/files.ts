@@ -32,7 +32,7 @@ class Scene {
   /** Initial text of a new scene, which need not be saved; null if the scene comes from a file. */
   untouched: string | null = null;
 
-  /** `of` is the scene that this one is a copy of. The copy replaces it as soon as it is saved. */
+  /** If `of` is given, the scene is a copy of `of`, which it replaces as soon as it is saved. */
   constructor(public name = "scene.scn", readonly of: Scene | null = null) {}
 
   /** Last known content of the file, or the initial text if there is no file. */
@@ -50,7 +50,8 @@ const SLOW = 800;
 const LONE = /\r(?!\n)/; // a carriage return that ends no line
 const NOT_SAVED = "Nothing was saved, because there is no connection. The text stays here.";
 
-/** Maximum number of differing lines to search for; with more, all lines count as differing. */
+/** Maximum number of differing lines to search for. With more, the search would take too long, so
+ * all lines count as differing. */
 const MOST_CHANGES = 3000;
 
 /** The host's file and local files. A page without a host has only local files. */
@@ -60,10 +61,12 @@ class Files {
   onLeave: () => void = () => {};
   /** Whether the host has sent its scene to this page. */
   isTold = false;
-  /** Text that was restored before the host sent its scene, and the file content it began from. */
+  /** Text of a draft or a link that was restored before the host sent its scene. `base` is the
+   * content that the draft's file had when editing began; undefined for a link. */
   private early: { base: string | null | undefined; text: string } | null = null;
-  /** The scene of the host's file; `at` is the scene that the page shows, which may be another. */
+  /** The scene of the host's file. */
   private hosts = new Scene();
+  /** The scene that the page shows. */
   at = this.hosts;
   private readonly conflict = byId<HTMLDialogElement>("conflict-dialog");
 
@@ -95,7 +98,8 @@ class Files {
       effects: turns.of({ from: this.at, to }) });
   }
 
-  /** Switches to the scene to which the text belongs after Undo, Redo or a new scene. */
+  /** Makes the scene to which the text belongs the current one, after Undo, Redo or the start of a
+   * new scene. */
   follow(transactions: readonly Transaction[]): void {
     for (const { effects } of transactions) for (const it of effects) {
       if (it.is(turns)) for (let at: Scene | null = it.value.to; at; at = at.copy) this.at = at;
@@ -130,7 +134,8 @@ class Files {
   hosted({ name, text, reason, saved }: HostedFile): void {
     unsay(NOT_SAVED);
     Object.assign(this.hosts, { name, isNew: isServed && !saved });
-    // While another scene is shown, changes of the host's file wait until it is shown again.
+    // While the page shows another scene, the text in the editor is not the host's, so it is not
+    // replaced.
     if (this.at !== this.hosts) return this.show();
     if (!this.isTold) {
       const [early, { view: { state: { selection } } }] = [editor.text, editor];
@@ -143,7 +148,7 @@ class Files {
       if (this.early !== null) {
         this.restore(early, this.early.base);
         editor.view.dispatch({ selection });
-        // The link still contains the scene, so the scene need not be saved.
+        // A restored link stays in the page's address, so its scene is not lost if it is not saved.
         if (!isServed && this.early.base === undefined) this.at.untouched = this.early.text;
       }
       if (saved && text === null) this.tellGone(reason);
@@ -225,7 +230,8 @@ class Files {
     try {
       const answer = await connection.request<Saved>("studio/save", about);
       if (answer.ok) this.saved(scene, name, text);
-      // Another scene may have replaced the saved one during the request.
+      // If the page shows another scene by now, the user cannot choose between the two texts, so
+      // the save fails.
       else if (this.at !== scene) throw new Refusal(0, `${name} is not saved: it was changed.`);
       else if (answer.text === null) this.changed(null);
       else this.ask(answer.text);
@@ -314,7 +320,7 @@ class Files {
     this.conflict.returnValue = "";
     this.conflict.onclose = () => {
       const { returnValue: choice } = this.conflict;
-      // If nothing is chosen, the page stays based on the older text, so the next save asks again.
+      // If the user makes no choice, `base` stays the older content, so the next save asks again.
       if (choice === "") return;
       this.at.seen = this.at.base = theirs;
       if (choice === "page") void this.save();

@@ -1,5 +1,6 @@
 // Pictures of the newest text: first a coarse one, then finer ones, up to the scene's own samples.
-// A newer text replaces older ones. While it has errors, the last good text keeps its picture.
+// If the text changes, rendering of the older text ends. While the text has errors, pictures of its
+// last version without errors are shown.
 
 import type { Text } from "@codemirror/state";
 import { connection } from "./connection";
@@ -18,14 +19,18 @@ export interface Shown {
   version: number;
 }
 
-/** Maximum number of pixels of a coarse picture, which is fast enough for each step of a drag. */
+/** Maximum number of pixels of a coarse picture. One is rendered at each step of a drag, so it must
+ * be rendered quickly; with more pixels, the picture would follow the pointer late. */
 const COARSE_PIXELS = 320 * 180;
 
-/** Largest size that all browsers can show: pixels of a picture, and pixels of one of its sides. */
+/** Maximum numbers of pixels of a picture and of one of its sides. All browsers can show pictures
+ * of this size; a larger picture is requested at a lower resolution. */
 const MOST = { pixels: 16_000_000, side: 8192 };
-/** Pause in a drag, in ms, before finer pictures are requested: a little over a screen refresh. */
+/** Pause in a drag, in ms, before finer pictures are requested. It is a little longer than the time
+ * between two refreshes of a usual screen (17 ms). */
 const HAND_RESTS = 20;
-/** Time of a final picture, in ms, up to which the next one skips the sharp picture before it. */
+/** Rendering time, in ms. If the last final picture was rendered faster, the next one is expected
+ * as soon, so no sharp picture is requested before it. */
 const SOON = 200;
 
 /** A requested picture: its text, and the number of the request. */
@@ -33,7 +38,8 @@ interface Asked { doc: Text | null; generation: number }
 
 class Frames {
   onShow: (shown: Shown) => void = () => {};
-  /** Called with the state of the newest text (`broken`: it has errors), or a request's error. */
+  /** Called when it is known whether the newest text has errors (`broken`) or not (`good`), and
+   * with the error if a request fails. */
   onState: (state: "good" | "broken" | Error) => void = () => {};
   /** Called when a drag ends. */
   onRest: () => void = () => {};
@@ -42,7 +48,7 @@ class Frames {
   /** Settles when the newest text's coarse picture has arrived or failed. */
   coarse: Promise<unknown> = Promise.resolve();
 
-  /** The shown picture and its request. The text may have changed since. */
+  /** The picture that the page shows, with its request. The picture may be of an older text. */
   shown: Shown & Asked | null = null;
 
   private generation = 0;
@@ -95,7 +101,8 @@ class Frames {
         const before = { doc: null, generation: asked.generation - 1 };
         const isDone = this.shown?.fineness === "final"
           && this.shown.generation === before.generation;
-        // The picture of the last good text is completed. Further errors do not begin it again.
+        // When the text gets errors, the final picture of its last version without errors is
+        // requested, unless it is already shown. While errors remain, it is not requested again.
         if (isFirst && !isDone) void this.present(before, "final", this.ask({ last: true }));
         return null;
       }

@@ -9,7 +9,8 @@ import { Decoration, EditorView, type DecorationSet } from "@codemirror/view";
 /** Marks a change of the text as the first or a later one of a gesture (a drag, for example). */
 const step = Annotation.define<"first" | "next">();
 
-/** Pause in typing, in ms, after which Undo separates further typing; CodeMirror's default. */
+/** Pause in typing, in ms. What is typed before and after such a pause is undone separately. The
+ * value is CodeMirror's default. */
 const TYPING_PAUSE = 500;
 const touched = Decoration.mark({ class: "touched" });
 
@@ -35,7 +36,8 @@ function grouped(past: Extension = []): Extension {
   let last = 0;
   return [
     history({
-      // The delay is so long that only isolated changes and `joinToEvent` divide changes for Undo.
+      // The delay is so long that it has no effect. Instead, `joinToEvent` decides which changes
+      // are undone together, and isolated changes are undone alone.
       newGroupDelay: 1e11,
       joinToEvent: (transaction, isAdjacent) => transaction.annotation(step) === "next"
         || (isAdjacent && Date.now() - last < TYPING_PAUSE),
@@ -61,9 +63,11 @@ export function rewrite(view: EditorView, change: TransactionSpec, past: Extensi
 /** Changes of the text by a drag or slider. The result depends only on the text at the start and on
  * the last change. If something else changes the text, no further change is made. */
 export class Gesture {
-  /** Text at the start; `current` is the text now, and `written` the changes between the two. */
+  /** Text of the scene when the gesture began. */
   readonly base: Text;
+  /** Text after the last change that the gesture has made. */
   private current: Text;
+  /** Changes that the gesture has made to the text so far. */
   private written: ChangeSet;
   private over = false;
   private readonly past: Extension;
@@ -102,7 +106,8 @@ export class Gesture {
     if (this.current !== this.base) this.view.dispatch({ annotations: isolateHistory.of("after") });
   }
 
-  /** Reverts the gesture, without a trace in Undo. If the text changed otherwise, only ends it. */
+  /** Reverts the gesture without a trace in Undo. If something else has changed the text, keeps the
+   * text and only ends the gesture. */
   cancel(): void {
     if (this.over) return;
     if (!this.isAlone) return this.end();

@@ -107,7 +107,8 @@ async function pick(offset: number, picked: string, gesture: Gesture): Promise<v
   const range = editor.range(offset, offset + length);
   const ways = await editor.askCurrent<ColorPresentation[]>(
     "textDocument/colorPresentation", { color, range });
-  // Of the new colour's possible forms, the server lists the form of the old colour first.
+  // The server lists the forms in which the new colour can be written. The first one is the form of
+  // the old colour, so it is used.
   const way = ways?.[0];
   if (way !== undefined) gesture.write({ from: offset, to: offset + written.length,
     insert: way.label });

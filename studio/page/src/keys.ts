@@ -11,15 +11,18 @@ import { tools, type Tool } from "./tools";
 
 /** Step of an arrow key, in pixels of the picture; with Control, a tenth for fine movements. */
 const KEY_STEP = 10;
-/** Pause, in ms, that ends a drag by keys or wheel; longer than between repeats of a held key. */
+/** Pause in pressing keys or turning the wheel, in ms, after which their drag ends. A held key
+ * repeats faster, so that its repetitions belong to one drag. */
 const KEY_PAUSE = 500;
 
 const ARROWS: Record<string, Point> =
   { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
-/** Elements that use all keys (`TEXT`), or only arrow keys, Space and Escape (`CONTROL`). */
+/** Elements in which keys do not control the picture, because they need all keys, e.g. to type
+ * text. */
 const TEXT = "input:not([type=radio],[type=checkbox],[type=range]), [contenteditable=true], dialog";
 const SAVE = ["Control+s", "Control+Shift+s"]; // work in `TEXT`, too
+/** Elements in which arrow keys, Space and Escape do not control the picture. */
 const CONTROL = "input, select, button:not(.handle), summary, #divider, [open], [role=group]";
 
 /** Returns the name of a pressed key as the attribute `data-key` spells it. */
@@ -28,7 +31,8 @@ function nameOf({ key, ctrlKey, metaKey, shiftKey }: KeyboardEvent): string {
   return `Control+${shiftKey ? "Shift+" : ""}${key.toLowerCase()}`;
 }
 
-/** Returns the element that a key operates. The key of the active constraint switches it off. */
+/** Returns the element that a key operates. If the key belongs to the selected constraint of drags,
+ * returns the element `free`, so that the key removes the constraint. */
 function controlOf(key: string): HTMLElement | undefined {
   const controls = [...document.querySelectorAll<HTMLElement>("[data-key]")];
   const found = controls.find(it => it.dataset["key"]?.split(" ").includes(key));
@@ -117,7 +121,8 @@ function ofCamera(handle: Tool): Drag {
   return new Drag(at, () => ({ object: null, handle, at }));
 }
 
-/** Begins a drag: of the focused handle, or else of the selected object or of the camera. */
+/** Begins a drag of the focused handle. If none has the focus, drags the selected object, or the
+ * camera if a camera tool is chosen. */
 function begin(focused: Element): Drag | null {
   const { tool } = tools;
   const isHandle = focused.closest(".handle") !== null;

@@ -1,4 +1,5 @@
-// Syntax highlighting by lists of words. The server then highlights names by their meaning.
+// Syntax highlighting by lists of words. It does not use the server, so it works without a
+// connection.
 
 import { StreamLanguage, syntaxHighlighting } from "@codemirror/language";
 import { classHighlighter } from "@lezer/highlight";

@@ -7,7 +7,8 @@ import { editor } from "./editor";
 import { picture } from "./picture";
 import { setText } from "./visible";
 
-/** Minimum share of the page for the text and for the picture, in %, so that neither vanishes. */
+/** Minimum width or height of the text and of the picture, in % of the page. With a smaller value,
+ * the text or the picture could become too small to use. */
 const LEAST = 20;
 const MOST = 80;
 

@@ -26,7 +26,8 @@ import { mapSliders, refreshSliders, stop } from "./sliders";
 import * as status from "./status";
 import { setText } from "./visible";
 
-/** Delay after a change, in ms, before hints, sliders and objects are requested: a typing pause. */
+/** Delay after a change, in ms, before hints, sliders and objects are requested. It is longer than
+ * the time between two keys in fast typing, so the requests are made in pauses. */
 const REST = 150;
 
 editor.extend([keymap.of([fixKey, { key: "Alt-Enter", run: openSwatch }]), numberControls,
@@ -123,7 +124,8 @@ let waiting: HostedFile | null = null;
 async function hosted(file: HostedFile): Promise<void> {
   await linked;
   const first = !files.isTold;
-  // Playing stops: a playing slider counts as a drag, so it would delay the file for ever.
+  // A playing slider must stop. It counts as a drag, and the host's file is handled only when no
+  // drag is under way.
   stop();
   waiting = frames.dragging === null ? null : file;
   if (waiting !== null) return;

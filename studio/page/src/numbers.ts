@@ -13,7 +13,8 @@ import type { Limits } from "./protocol";
 /** A number in the text, from its sign at `from` to `to`. Its unit, if any, reaches to `end`. */
 interface Literal { from: number; to: number; end: number; value: number }
 
-/** Pixels of a horizontal drag per step of the number; with fewer, it would be hard to control. */
+/** Pixels by which the pointer moves sideways to change the number by one step. With fewer pixels,
+ * single steps would be hard to hit; with more, a drag would not reach far. */
 const DRAG_PIXELS = 4;
 
 /** Matches text at whose end a `-` is the sign of a number rather than a subtraction. */
@@ -45,7 +46,8 @@ export class Turn {
 
   constructor(private readonly literal: Literal, private readonly limits = limitsOf(literal.to)) {}
 
-  /** Sets the number to what `value` returns for its step, rounded and clamped to its limits. */
+  /** Calls `value` with the number's step, and sets the number to the result, rounded and clamped
+   * to the number's limits. */
   async set(value: (step: number) => number): Promise<void> {
     const { from, to } = this.literal;
     const limits = await this.limits;
@@ -68,7 +70,8 @@ export class Dial {
   constructor(readonly literal: () => Literal | null) {
     const { range } = this;
     range.type = "range";
-    // After Escape, the browser continues the drag until the pointer is released; this is ignored.
+    // After Escape, the browser still moves the slider until the pointer is released. While `isOff`
+    // is set, these movements do not change the number.
     let isOff = false;
     range.addEventListener("input", () => isOff ? this.show() : void this.set(Number(range.value)));
     range.addEventListener("change", () => this.end());
@@ -95,7 +98,8 @@ export class Dial {
     frames.released(this);
   }
 
-  /** Shows the number unless it is being changed. Returns its literal; null if it is deleted. */
+  /** Sets the slider to the number in the text, unless the slider is being moved. Returns the
+   * number's literal; null if it is deleted. */
   show(): Literal | null {
     const found = this.literal();
     if (found === null || this.turn !== null || this.limits === null) return found;

@@ -10,7 +10,8 @@ import type { ListedObject, Overlays } from "./protocol";
 import { selection } from "./selection";
 import { setText } from "./visible";
 
-/** Maximum number of objects in the picture's description; a longer one tires a listener. */
+/** Maximum number of objects in the picture's description for screen readers. Hearing a longer list
+ * would take too long. */
 const DESCRIBED = 6;
 
 let described = "";
@@ -24,7 +25,8 @@ function describe(objects: readonly ListedObject[]): void {
   }
   const places = Object.entries(there)
     .map(([place, names]) => names.join(", ") + (place && `: ${place}`));
-  // The server lists at most 1000 objects, so 1000 may mean more.
+  // The server lists at most 1000 objects. If the list has this length, the scene may contain more,
+  // so their number is unknown.
   const more = objects.length < 1000 ? objects.length - DESCRIBED : "many";
   if (objects.length > DESCRIBED) places.push(`${more} more`);
   const text = places.join("; ") || "A scene without objects";
@@ -53,7 +55,8 @@ export const refreshOutlines = newestOf<void>(async () => {
   const { doc } = editor.view.state;
   const about = { object: selection.index, only: overlays.needsAll ? null : shown };
   const answer = await editor.ask<Overlays>("pinhole/overlays", about);
-  // If the text has errors, the picture shows the last good text, and nothing can be dragged.
+  // If the text has errors, the overlays belong to an older text, so nothing can be selected or
+  // dragged by them.
   overlays.isTrue = answer !== null;
   if (answer !== null && editor.view.state.doc === doc) overlays.data = answer;
   overlays.draw();

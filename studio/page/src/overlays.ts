@@ -10,8 +10,10 @@ export type Layer = "outlines" | "vanishing" | "horizon" | "axis" | "grid" | "ne
 
 const boxes = [...document.querySelectorAll<HTMLInputElement>("#layers input")];
 
-/** Minimum zoom for the pixel grid and for samples, in screen pixels per pixel; chosen by eye. */
+/** Minimum zoom at which the pixel grid is drawn, in screen pixels per pixel. Chosen by eye: at a
+ * lower zoom, the lines would hide the picture. */
 const GRID_ZOOM = 6;
+/** Minimum zoom at which samples are drawn, in screen pixels per pixel. Chosen by eye. */
 const SAMPLES_ZOOM = 4;
 /** Distance of arrows from the border of the picture's area, in screen pixels; chosen by eye. */
 const EDGE = 14;
@@ -90,7 +92,8 @@ class OverlayLayer {
     const [x, y] = picture.toScreen(point);
     const { clientWidth: width, clientHeight: height } = picture.stage;
     const [middleX, middleY] = [width / 2, height / 2];
-    // Distance from the centre relative to the border's distance; above 1, the point is outside.
+    // Ratio of the point's distance from the centre to the border's distance from the centre. If it
+    // is more than 1, the point is outside of the border.
     const out = Math.max(Math.abs(x - middleX) / (middleX - EDGE),
       Math.abs(y - middleY) / (middleY - EDGE));
     const part = Math.max(1, out);

@@ -10,7 +10,8 @@ import type { Overlays, Pick, Point } from "./protocol";
 import { selection } from "./selection";
 import { tools, type Tool } from "./tools";
 
-/** Maximum movement of a click, in screen pixels; a hand is never quite still. More is a drag. */
+/** Maximum movement of the pointer in a click, in screen pixels. A hand is never quite still, so
+ * only a larger movement begins a drag. */
 const CLICK = 4;
 
 /** Tools that the middle (1) and the right (2) mouse button use, whichever tool is chosen. */
@@ -53,7 +54,8 @@ function follow(event: PointerEvent, start: Point, hold: () => Promise<Held | nu
   const { zoom } = picture;
   const move = (next: PointerEvent) => {
     tools.held = next;
-    // The movement is measured on the screen, because the picture may have moved meanwhile.
+    // The movement is measured in screen pixels, because the picture itself may be moved during the
+    // drag.
     const [dx, dy] = [next.clientX - event.clientX, next.clientY - event.clientY];
     moved ||= Math.hypot(dx, dy) > CLICK;
     if (moved) drag.to([start[0] + dx / zoom, start[1] + dy / zoom]);
@@ -61,7 +63,8 @@ function follow(event: PointerEvent, start: Point, hold: () => Promise<Held | nu
   giveUp = followPointer(event, move, () => drag.end(), () => drag.cancel());
 }
 
-/** Selects the object at `point` and returns its centre handle; null if there is no object. */
+/** Selects the object at `point` and returns its centre as a handle. Returns null if there is no
+ * object, or if its centre is not visible in the picture. */
 async function grab(point: Point): Promise<Held | null> {
   const { choices } = selection;
   const pick = await editor.ask<Pick>("pinhole/pick", { point });

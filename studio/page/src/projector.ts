@@ -9,7 +9,8 @@ const KEY = "projector";
 const of = inAddress(KEY);
 export const isProjector = of !== null;
 
-/** Stored name of the tab's broadcast channel. Projector windows find it after a reload. */
+/** Name of the tab's broadcast channel from before a reload; null if no projector window had
+ * requested pictures. By the same name, such windows still get pictures. */
 const known = remembered(KEY, "sessionStorage");
 const name = of ?? known ?? `${Date.now()}-${Math.random().toString(36).slice(2)}`;
 const channel = new BroadcastChannel(`pinhole-${name}`);

@@ -18,7 +18,8 @@ export interface SceneObject {
 
 export interface Handle { handle: string; at: Point | null; label: string }
 export interface DrawnObject extends SceneObject { outline: Polyline[]; handles: Handle[] }
-/** An object, with words for its place in the picture; null for boards of unknown place. */
+/** An object, with words for its place in the picture. `place` is null if the server cannot tell
+ * where a checkerboard is. */
 export interface ListedObject extends SceneObject { place: string | null }
 
 export interface Overlays {
@@ -41,16 +42,19 @@ export type Along = "x" | "y" | "z" | "floor";
 export interface Dragged {
   edits: TextEdit[];
   values: string[];
-  /** Names of other fields that change, too, such as `camera.lookat`. */
+  /** Names of fields that change although they were not dragged, because they use the same numbers
+   * of the text, such as `camera.lookat`. */
   also?: string[];
 }
 
-/** Range, step and number of decimals of a number. `ends` are the two ends of its slider. */
+/** Smallest and largest value, step and number of decimals of a number in the text. `ends` are the
+ * two ends of its slider. */
 export interface Limits {
   least: number | null; most: number | null; step: number; decimals: number; ends: [number, number];
 }
-/** A definition with `let`. `limits` is null if the value is not a number or an angle. `note` says
- * why the comment after it does not give the slider's range. */
+/** A definition with `let`. `limits` is null if its value is not a number or an angle. `note` is a
+ * message for the user, if the comment after the definition is no valid range, or if the slider's
+ * range differs from it. */
 export interface Slider { name: string; range: Range; limits: Limits | null; note: string | null }
 
 /** Edits that add a block, the name of its object, and an offset in the block for the cursor. */
@@ -68,7 +72,8 @@ export interface HostedFile {
   drafts?: Draft[];
 }
 
-/** Unsaved text of the page `id`. `base` is the file's text that it began from; `time` is in s. */
+/** Unsaved text of the page with the key `id`. `base` is the content of the file when editing
+ * began. `time` is when the draft was made, in seconds since 1970. */
 export interface Draft { id: string; name: string; text: string; base: string | null; time: number }
 
 /** Whether the file was saved. If not, `text` is the file's current content. */
@@ -79,7 +84,8 @@ export class Refusal extends Error {
   constructor(readonly code: number, message: string) { super(message); }
 }
 
-/** Returns whether the server has cancelled the request because of a newer one. */
+/** Returns whether the server has dropped the request, because a newer one replaced it or the text
+ * has changed. */
 export function isSuperseded(error: unknown): boolean {
   return error instanceof Refusal && (error.code === -32800 || error.code === -32801);
 }

@@ -1,12 +1,13 @@
-// Cleans the HTML that the language client makes of the server's Markdown. It may quote any text of
-// a scene, so only plain formatting is kept.
+// Cleans the HTML that the language client makes of the server's Markdown. The Markdown may quote
+// any text of a scene, which may contain HTML, so only plain formatting is kept.
 
 import { visible } from "./visible";
 
 const ALLOWED = new Set(["H1", "H2", "H3", "P", "CODE", "PRE", "EM", "STRONG", "UL", "OL", "LI",
   "BR", "HR"]);
 
-/** Reduces HTML to plain formatting. Links become their text; other elements, their source. */
+/** Reduces HTML to plain formatting. A link is replaced by its text. Any other element that is not
+ * allowed is shown as source code. */
 export function sanitized(html: string): string {
   // The parsed document has no window, so nothing in it is run or loaded.
   const { body } = new DOMParser().parseFromString(html, "text/html");

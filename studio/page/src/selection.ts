@@ -12,7 +12,8 @@ import { tools } from "./tools";
 import type { Added, DrawnObject, Handle, Point, SceneObject } from "./protocol";
 import { say } from "./status";
 
-/** Minimum distance between two handles, in screen pixels: the size of a handle for the pointer. */
+/** Minimum distance between two handles, in screen pixels. It is the width of the area in which a
+ * handle can be pressed, which is larger for fingers than for a mouse. */
 const APART = matchMedia("(pointer: coarse)").matches ? 45 : 25;
 
 /** Offsets, in screen pixels, tried in turn to keep a handle from overlapping another one. */
@@ -27,10 +28,12 @@ class Selection {
   /** The selected object; undefined if none is selected. */
   selected: Placed | undefined;
   onChange: () => void = () => {};
-  /** Number of selections made so far. It shows if a newer one was made before an answer came. */
+  /** Number of selections made so far. If it has grown when the server answers, the user has
+   * selected something else in the meantime. */
   choices = 0;
   private placed: Placed[] = [];
-  /** Object chosen in a repeated block; null if the user chose to select nothing. */
+  /** Object that the user has chosen. It tells apart objects that a loop creates from the same
+   * block. It is null if the user chose to select nothing, and undefined before any choice. */
   private chosen: SceneObject | null | undefined;
   private readonly handles = byId("handles");
   private readonly menu = byId<HTMLSelectElement>("objects");
@@ -92,14 +95,16 @@ class Selection {
     return { object, from: editor.offset(start), to: editor.offset(end) };
   }
 
-  /** Selects the object at the cursor. Unless `isByCursor`, a selected block stays selected. */
+  /** Selects the object at the cursor. If `isByCursor` is false, an object that is already selected
+   * stays selected. */
   private follow(isByCursor = false): void {
     const { head } = editor.view.state.selection.main;
     const there = this.placed.filter(it => it.from < it.to);
     const { from = 0, to = 0 } = this.selected ?? {};
     const kept = isByCursor || from === to ? [] : there.filter(it => it.from === from);
     const touching = kept.length > 0 ? kept : there.filter(it => it.from <= head && head <= it.to);
-    // Between two blocks that touch, takes the second; in a repeated block, the chosen object.
+    // If the cursor is between two adjacent blocks, the second one is selected. If a loop creates
+    // several objects from the block, the chosen one of them is selected.
     const first = touching.find(it => head < it.to) ?? touching[0];
     const isChosen = ({ from, object: { indices } }: Placed) => from === first?.from
       && String(indices) === String(this.chosen?.indices);
@@ -129,7 +134,8 @@ class Selection {
   get drawn(): DrawnObject | undefined {
     const { data, isTrue } = overlays;
     const { line } = editor.position(this.selected?.from ?? 0);
-    // Until the objects of a new text are listed, the index may belong to another object.
+    // The line is compared as well as the index: until the objects of a new text are listed, the
+    // index may belong to another object.
     return isTrue ? data?.objects.find(it => it.index === this.index
       && it.range.start.line === line) : undefined;
   }
@@ -139,7 +145,8 @@ class Selection {
     const object = this.drawn;
     const shown = object?.handles.filter(it => it.at !== null) ?? [];
     const names = JSON.stringify([object?.index, object?.label, ...shown.map(it => it.handle)]);
-    // While the handles' names stay the same, the elements stay: one may be held by the pointer.
+    // The elements are replaced only if the handles' names change, because the pointer may be
+    // dragging one of them.
     if (names !== this.handles.dataset["names"]) this.handles.replaceChildren(
       ...shown.map(it => this.createHandle(object as DrawnObject, it)));
     this.handles.dataset["names"] = names;
@@ -160,7 +167,8 @@ class Selection {
     return button;
   }
 
-  /** Returns the selected object's handle that `element` shows, or its first handle for null. */
+  /** Returns the handle of the selected object that `element` shows. If `element` is null, returns
+   * the object's first handle. */
   held(element: Element | null): Held | null {
     const name = element?.closest<HTMLElement>(".handle")?.dataset["handle"];
     const object = this.drawn;

@@ -8,7 +8,9 @@ import { files } from "./files";
 import { say } from "./status";
 import { setText } from "./visible";
 
-/** Maximum length of a scene in a link, in characters; browsers limit the length of addresses. */
+/** Maximum length of a scene in a link, in characters. Browsers limit the length of an address, so
+ * a link to a longer scene might not open. The limit also protects from a damaged link whose data
+ * unpack to a huge text. */
 const LONGEST = 1_000_000;
 const KEY = "scene";
 const NO_COPY = "The browser does not let the page copy: copy the selected link yourself.";

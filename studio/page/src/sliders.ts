@@ -8,7 +8,8 @@ import { Dial, literalAt } from "./numbers";
 import type { Slider } from "./protocol";
 import { setText } from "./visible";
 
-/** Time in which a playing slider moves from one end to the other, in ms; slow enough to watch. */
+/** Time in which a playing slider moves from one end to the other, in ms. Chosen by eye: with a
+ * shorter time, a change would be hard to follow. */
 const PLAY = 4000;
 
 type Row = ReturnType<typeof createRow>;

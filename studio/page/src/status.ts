@@ -36,7 +36,8 @@ export function stale(why: string | null): void {
   byId("stage").toggleAttribute("data-stale", why !== null);
 }
 
-/** Shows what is wrong with the connection, and that the text is stored if `hasText`. */
+/** Shows the state of the connection, unless the connection works. If it is lost or hangs and
+ * `hasText` is true, also says where the text is kept. */
 export function connection(state: ConnectionState | "hanging", hasText: boolean): void {
   const isKept = hasText && state !== "connecting" && state !== "open";
   byId("connection-bar").hidden = state === "open";

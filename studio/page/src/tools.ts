@@ -1,4 +1,5 @@
-// Tools, which say what a drag on the picture does, and the axis or plane along which objects move.
+// Tools for drags on the picture: the tool says what a drag does, and a constraint is an axis or
+// plane along which objects move.
 
 import { byId } from "./dom";
 import { picture } from "./picture";
@@ -8,14 +9,16 @@ import { setText } from "./visible";
 /** What a drag does. `move` moves an object; all other tools change the camera. */
 export type Tool = "move" | "orbit" | "pan" | "dolly" | "roll" | "view_distance" | "look";
 
-/** Step of an object's drag, in screen pixels: coarse enough for round numbers in the text. */
+/** Step by which a drag moves an object, in screen pixels. A smaller step would write numbers with
+ * more decimals into the text; a larger one would make exact placing harder. */
 const STEP = 8;
 const radios = (name: string) =>
   [...document.querySelectorAll<HTMLInputElement>(`input[name=${name}]`)];
 
 class Tools {
   tool: Tool = "move";
-  /** Keys held in a drag: Shift frees it from its axis or plane, Control from its step. */
+  /** Modifier keys during a drag. With Shift, the object moves in any direction, not only along the
+   * chosen axis or plane. With Control, it moves without steps. */
   held = { shiftKey: false, ctrlKey: false };
   /** Axis or plane that the user chose for drags (`""` is none); undefined before any choice. */
   private chosen: Along | "" | undefined;

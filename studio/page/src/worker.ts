@@ -1,5 +1,6 @@
-// The engine (the language server) in a web worker. It exchanges JSON texts with the page. Between
-// slices of work it reads new messages, so that a newer change can replace the work on an old one.
+// The engine (the language server) in a web worker, which exchanges JSON texts with the page. The
+// engine reads new messages between slices of work. If the text has changed, it can thus drop the
+// work on the older text.
 
 import init, { Engine } from "pinhole-engine";
 
@@ -21,7 +22,8 @@ function run(engine: Engine): void {
   say([engine.greeting()]);
 }
 
-// The page learns of an exception in a timer, but not of an unhandled rejection.
+// Throws an error in a timer, so that the page is told of it. A worker does not report an unhandled
+// rejection to the page.
 const fail = (error: unknown) => setTimeout(() => { throw error; });
 const wasm = new URL("pinhole_bg.wasm", import.meta.url);
 init({ module_or_path: wasm }).then(() => run(new Engine()), fail);

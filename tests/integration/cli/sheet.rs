@@ -2,8 +2,8 @@
 
 use super::*;
 
-/// Returns the folder of [`folder`] with two more scenes: `b.scn` has another size, and `wrong.scn`
-/// has errors.
+/// Returns a folder with three scenes: `a.scn`; `b.scn`, which has another size; and `wrong.scn`,
+/// which has errors.
 fn folder_with_more_scenes() -> Folder {
     let folder = folder();
     folder.write(
@@ -67,7 +67,8 @@ fn each_picture_of_a_sheet_equals_the_render_of_its_scene() {
     let rows = open("rows.png");
     let row = |y, height| image::imageops::crop_imm(&rows, 12, y, 30, height).to_image();
     assert!(row(12, 40) == row(86, 40) && row(52, 22) != row(126, 22));
-    // A picture one pixel wide leaves no room for any letter of its name.
+    // Below a picture one pixel wide, the sheet has no room for any letter of the picture's name.
+    // The margins around the picture keep their size.
     folder.done("sheet b.scn --set image.width=1 --set image.height=1 -o dot.png");
     assert_eq!(open("dot.png").dimensions(), (25, 47));
     // With `--width`, each picture of the sweep is equal to the picture of a scene with that width.

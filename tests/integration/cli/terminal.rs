@@ -42,8 +42,8 @@ fn messages_escape_control_characters_of_texts_names_and_pictures() {
         assert_ne!(said.status, 0, "{line:?}");
         assert_escaped(&said.errors, line);
     }
-    // A picture stores the recipe from which it was made: the scene and the overrides. The recipe
-    // is printed with the same escapes.
+    // A picture file may contain a recipe: the scene and the overrides from which the picture was
+    // made. If a message quotes the recipe, control characters must be escaped.
     let recipe = Recipe {
         scene: SCENE.to_owned(),
         overrides: vec![format!("Ball.radius={CONTROLS}")],

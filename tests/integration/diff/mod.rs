@@ -46,7 +46,8 @@ fn save(folder: &Folder, name: &str, picture: impl Into<DynamicImage>) {
 }
 
 /// Runs `diff` for each row of `table`: the arguments, the exit status, and the expected start of
-/// the output. If the last cell begins with `…`, the output must contain it anywhere.
+/// the output. If the last cell begins with `…`, the output must contain the rest of the cell
+/// anywhere.
 #[track_caller]
 fn compare(folder: &Folder, table: &'static str) {
     for [compared, status, words] in rows(table) {
@@ -97,8 +98,8 @@ fn pictures_are_compared_by_content_across_formats() {
     for name in ["a.ppm", "a.bmp", "a.tiff", "a.webp", "b.jpg", "b.gif"] {
         save(&folder, name, picture.to_rgb8());
     }
-    // The picture is white with half opacity. Opacity mixes linear light, and half of the light of
-    // white is 187.5 as an sRGB value, or 188 as a byte.
+    // The picture is white with half opacity, and `diff` shows it on black. Opacity mixes linear
+    // light, and half of the light of white is 187.5 as an sRGB value, rounded to 188 as a byte.
     let half = ImageBuffer::from_pixel(96, 64, Rgba([65535u16, 65535, 65535, 32768]));
     save(&folder, "half.png", half);
     let mixed = ImageBuffer::from_pixel(96, 64, Rgb([188u8; 3]));
@@ -172,7 +173,8 @@ fn standard_input_is_a_picture_or_a_scene() {
 fn different_sizes_are_reported_with_a_remedy() {
     let folder = folder();
     save(&folder, "b.png", image::RgbImage::new(48, 32));
-    // The crop comes from a picture that is rendered larger than the scene says.
+    // The crop comes from a picture that is wider than the scene's 60 pixels. Its position is
+    // outside the scene's picture, so `diff` must refuse to compare the two.
     render(&folder, "-o c.png --set image.width=200 --crop 150,5,40,30");
     compare(
         &folder,

@@ -133,7 +133,7 @@ fn objects_are_judged_by_their_own_pixels() {
     let found = json(&folder, "b.png a.scn");
     assert_eq!(found["mistakes"][0]["id"], "mirrored", "{found:#}");
     all_are(&found, false);
-    // Four pixels of the background are changed.
+    // Only four pixels of the background are changed, so every object must be judged right.
     let mut picture = open(&folder, "a.png").to_rgb8();
     for (x, y) in [(3, 3), (5, 3), (9, 4), (4, 7)] {
         picture.put_pixel(x, y, Rgb([(20 * x) as u8, 255, 7]));
@@ -195,7 +195,7 @@ fn an_obvious_defect_is_the_only_mistake_reported() {
         let ids: Vec<_> = mistakes.iter().map(|mistake| &mistake["id"]).collect();
         assert_eq!(ids, [id], "{found:#}");
     }
-    // If a picture shows only background, the reported mistake is the camera.
+    // If only background is visible in a picture, the first reported mistake is `nothing_seen`.
     render(
         &folder,
         "-o b.png --set 'camera.lookat=(3, 30, 8)' --set image.background=navy",

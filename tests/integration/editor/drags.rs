@@ -70,9 +70,10 @@ fn camera_of(scene: &Scene) -> CameraFacts {
 }
 
 /// Returns the position in space of a handle of the first object. For a handle without a fixed
-/// position, such as one that depends on the camera, returns the object's centre. The handle of a
-/// checkerboard is above or below the point where the camera's view axis met the board before the
-/// drag; `held` is the scene before the drag.
+/// position, such as one that depends on the camera, returns the object's centre.
+///
+/// `held` is the scene before the drag. The camera's view axis meets the undragged checkerboard at
+/// a point. The checkerboard's handle moves up and down through this point.
 fn handle_position(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
     match (scene.objects[0].shape, held.objects[0].shape) {
         (Shape::Sphere(sphere), _) => sphere.center,
@@ -120,8 +121,9 @@ fn axis_of(handle: &str, word: &str) -> Option<usize> {
     "xyz".find(axis).filter(|_| !axis.is_empty())
 }
 
-/// Returns whether the tip of a triangle's normal appears within half a pixel of the point `to`. If
-/// the tip cannot reach the ray through `to`, its position must be the nearest to that ray.
+/// Returns whether the tip of a triangle's normal vector appears within half a pixel of the point
+/// `to`. If the normal is too short to reach the ray through `to`, its tip must be as near to this
+/// ray as possible.
 fn normal_points_to(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bool {
     let camera = camera_of(scene);
     let (width, height) = (f64::from(scene.image.width), f64::from(scene.image.height));
@@ -191,17 +193,19 @@ proptest! {
         let Ok(changed) = dragged(&text, &moved) else { return Ok(()) };
         let mut after = read(&changed);
         prop_assert_eq!(after.objects.len(), before.objects.len());
-        // If the camera uses the name of the moved value, the drag has also changed the camera. The
-        // handle is compared with the pointer in the old camera, for which the drag was computed.
+        // The drag may have changed a value that has a name, and the camera may use this name, too.
+        // The handle is therefore compared with the pointer in the old camera, for which the drag
+        // was computed.
         after.camera = before.camera;
         let place = handle_position(&after, handle, &before);
         let found = project(&after, place);
         let message = format!("{changed}\n{handle} {word} {to}: {found}");
         match (handle, after.objects[0].shape) {
             ("radius", _) => {
-                // A ray that passes 3/4 pixel inside of the silhouette hits the sphere. A ray that
-                // passes 3/4 pixel outside of it does not. If the centre is behind the eye, the
-                // inside is the side away from the centre's projection.
+                // Two rays pass 3/4 pixel inside and outside of the silhouette. Only the ray inside
+                // hits the sphere. The inside lies towards the projection of the sphere's centre.
+                // If the centre is behind the eye, the inside lies in the opposite direction, and
+                // `side` is −1.
                 let CameraFacts { eye, w, .. } = camera_of(&after);
                 let side = (eye - place).dot(w).signum();
                 let inwards = (found - to).normalize_or_zero() * (0.75 * side);
@@ -310,8 +314,8 @@ fn dragging_one_handle_leaves_the_other_sides_and_edges_unchanged() {
             .iter()
             .flat_map(move |face| steps.map(|step| (text, face, step)))
     }) {
-        // In a text that begins with `let`, the centre and the size use the same name, so a drag
-        // along y changes both.
+        // In the text that begins with `let`, the centre and the size use the same name. A drag
+        // along y changes both of them, so this case is skipped.
         if text.starts_with("let") && handle.ends_with('y') {
             continue;
         }
@@ -362,7 +366,8 @@ fn dragging_one_handle_leaves_the_other_sides_and_edges_unchanged() {
         assert!(shapes[0] != shapes[5]);
     }
 
-    // A pan does not change the vector from the eye to the `lookat` point.
+    // In this text, the camera looks at a point. A pan moves the eye and this point together, so
+    // the vector from the eye to the point must stay the same.
     let text =
         "sphere { center (0, 0, 0) } camera { eye (3, 3.55, 8) lookat (0.2, 0.8, 0.125) d 2.75 }";
     let ahead = |text: &str| {

@@ -1,5 +1,5 @@
-//! Tests that reading or querying an incomplete or edited text never panics. Each beginning of
-//! every example is queried at its end.
+//! Tests that reading or querying an incomplete or edited text never panics. Every example is cut
+//! off at many offsets, and the beginning that remains is queried at its end.
 
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
@@ -51,7 +51,8 @@ fn ask_about_all(analysis: &Analysis<'_>) {
     let text = analysis.text();
     let hints = hints(analysis, 0..text.len());
     for hint in hints {
-        // A hint in the middle of a line would shift the columns that the formatter aligns.
+        // A hint in the middle of a line would shift the columns that the formatter aligns, so
+        // every hint must be at the end of a line.
         let rest = text.get(hint.at..).expect("a place between characters");
         let is_end = rest
             .lines()
@@ -86,9 +87,10 @@ fn ask_about_all(analysis: &Analysis<'_>) {
 
 sampled_and_exhaustive!(every_prefix_and_edit_of_an_example_gets_consistent_editor_answers);
 
-/// Queries an example at every second offset. For each of these offsets, also queries the text that
-/// ends there. In addition, reads the example without one byte, and queries it without eight
-/// characters in a row, as it is while a user rewrites a line.
+/// Queries an example at every second offset. Queries also the text that remains if the example is
+/// cut off at this offset. Then reads the example without a single byte. Finally, queries the
+/// example without eight characters in a row, because a user who rewrites a line leaves such a
+/// text.
 fn every_prefix_and_edit_of_an_example_gets_consistent_editor_answers(effort: Effort) {
     for (index, text) in effort.first(3, examples()).enumerate() {
         let whole = sources(&text);
@@ -141,7 +143,8 @@ fn editor_requests_survive_malformed_texts() {
     for text in texts {
         let sources = sources(text);
         let analysis = Analysis::new(&sources);
-        // A client may send any offset, even within a character or beyond the end of the text.
+        // A client may send an offset within a character or beyond the end of the text. The server
+        // moves such an offset to the preceding character boundary before it queries the text.
         for at in 0..text.len() + 3 {
             ask_at(&analysis, analysis.source().floor_char_boundary(at));
         }

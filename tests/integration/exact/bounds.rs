@@ -1,5 +1,5 @@
-//! Tests of exact pixels: error bounds (the distance to the true mean), bytes that are certain in
-//! spite of the error bound, memory and time.
+//! Tests of exact pixels: their error bounds, bytes that are certain in spite of the error bound,
+//! memory and time. The error bound limits the distance from the true mean.
 
 use std::time::{Duration, Instant};
 
@@ -63,7 +63,8 @@ fn ten_thousand_objects_are_known_within_1e_9() {
     ));
 }
 
-/// Nearly coincident silhouettes of spheres are distinguished as far as rounding allows.
+/// The silhouettes of two spheres differ by as little as 1e-15. The error bounds must still be at
+/// most 1e-9.
 #[test]
 fn nearly_coincident_outlines_are_known_and_add_up() {
     for gap in ["1e-6", "1e-8", "1e-10", "1e-12", "1e-14", "1e-15"] {
@@ -119,10 +120,11 @@ fn memory(scene: &str, crop: &str) -> u64 {
     most >> 10
 }
 
-/// Compares the memory for a hard pixel with that for an easy one; the hard pixel may take at most
-/// 128 MiB more. In the first scene, nearly everything is seen at one point of the hard pixel, so
-/// that the program subdivides the pixel very often; without a limit, this took 20 GB. In the
-/// second scene, the hard pixel shows 65 536 objects, and the easy pixel beside it shows none.
+/// The memory for a hard pixel may exceed that for an easy pixel by at most 128 MiB.
+///
+/// In the first scene, nearly all objects are seen at one point of the hard pixel, so the program
+/// subdivides the pixel very often. Without a limit, this took 20 GB. In the second scene, the hard
+/// pixel shows 65 536 objects, and the easy pixel beside it shows none.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_pixel_takes_bounded_memory() {
@@ -156,10 +158,11 @@ fn a_pixel_takes_bounded_memory() {
     }
 }
 
-/// Two hundred objects pass through the same few points of a pixel that covers half of all
-/// directions. Many of their curves can be distinguished only in the highest precision. In an
-/// optimised build, a pixel takes at most a second. The test allows more time, because tests are
-/// less optimised and run in parallel.
+/// One pixel covers half of all directions, and the surfaces of two hundred objects meet at a few
+/// points in it. Many of the objects' outlines can be distinguished only in the highest precision.
+///
+/// In an optimised build, a pixel takes at most a second. The test allows more time, because tests
+/// are less optimised and run in parallel.
 #[test]
 fn a_pixel_takes_bounded_time() {
     for seed in 0..4 {

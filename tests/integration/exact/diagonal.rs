@@ -1,14 +1,16 @@
-//! Tests of exact pictures of a checkerboard if the rays of a pixel run along a diagonal of its
-//! squares. All squares on a diagonal have the same colour. Therefore, the pixel may differ from
-//! the mean of both colours even if the squares are too small to be visible.
+//! Tests of exact pictures of a checkerboard in which the rays of a pixel run along a diagonal of
+//! the squares. All squares on a diagonal have the same colour. Therefore, the pixel may differ
+//! from the mean of both colours even if the squares are too small to be visible.
 
 use super::*;
 
 /// Compares pixels of black and white boards with values that were computed independently. The last
-/// two cells of a row are the value and its own error. The view plane distance `d` is so tiny that
-/// nearly all rays lie in one vertical plane, which meets the board in a diagonal of its squares.
-/// In the first two rows, this diagonal has only black squares. In the others, the values are sums
-/// of millions of terms, computed with 40 digits for the limit d = 0.
+/// two cells of a row are the expected value and the error of this value.
+///
+/// The view plane distance `d` is so tiny that nearly all rays lie in one vertical plane. This
+/// plane meets the board in a diagonal of its squares. In the first two rows, the diagonal has only
+/// black squares. In the other rows, the values are sums of millions of terms, computed with 40
+/// digits under the assumption that d is 0.
 #[test]
 fn independently_known_pixels_lie_within_the_bound() {
     for [image, camera, board, x, y, truth, off] in rows("

@@ -73,8 +73,9 @@ fn square_indices([place, below]: &[Linear; 2], polygon: &Polygon) -> Vec<IBig> 
     successors(Some(first.clone()), |n| (n < last).then(|| n + IBig::ONE)).collect()
 }
 
-/// Returns the part of a polygon within one row or column of squares, i.e. where the board
-/// coordinate N/L is from `n` to `n + 1`.
+/// Returns the part of a polygon within one row or column of the board's squares. In a row or
+/// column, one coordinate of the board is from `n` to `n + 1`. This coordinate is the quotient of
+/// the linear forms `place` and `below`.
 fn strip([place, below]: &[Linear; 2], n: &IBig, polygon: &Polygon) -> Polygon {
     let line = |n: IBig| -> Linear {
         let n = RBig::from(n);
@@ -154,7 +155,7 @@ fn board_pixels_agree_with_rational_arithmetic() {
             axes: axes.clone(),
             d: rational(d),
         };
-        // The camera's `view_height` is 2, and rows are counted from the top of the picture.
+        // Side of a pixel in the view plane: the height of the view plane's window is 2 by default.
         let pitch = RBig::from(2) / RBig::from(height);
         let [left, top] = [width, height].map(|size| RBig::from(size) / RBig::from(2));
         for at in pixels.split(' ') {

@@ -6,8 +6,8 @@ use std::fs;
 use super::{SCENE, folder, hostile::run_with_deadline};
 use crate::program::Folder;
 
-/// The system's command `script`, if it is installed, imitates a terminal. In a pipe, the text is
-/// not changed.
+/// Runs each command once in a pipe, and once in the terminal that the system's command `script`
+/// imitates. If `script` is not installed, the test ends.
 #[test]
 fn scene_text_is_escaped_on_a_terminal_and_unchanged_in_a_pipe() {
     let hostile = "sphere  {} // \u{1b}]0;x\u{7} \u{9b}2J \u{202e}\n";
@@ -130,7 +130,8 @@ fn file_names_cannot_forge_lines_or_table_cells() {
             assert!(!said.errors.contains(forged), "{:?}", said.errors);
             assert!(!said.errors.contains("\nerror: b"), "{:?}", said.errors);
         }
-        // The names also appear in tables and pages of `diff`, `grade` and `report`.
+        // The names also appear in the tables and pages of `diff`, `grade` and `report`, so these
+        // outputs are tested, too.
         let said = run_with_deadline(&folder, &["diff", &picture, "a.scn"]);
         assert!(!said.errors.contains("\nerror: b"), "{:?}", said.errors);
         let said = run_with_deadline(&folder, &["grade", &scene, &picture, &other, "-o", "out"]);
@@ -166,7 +167,8 @@ fn csv_cells_never_start_a_spreadsheet_formula() {
         let mut table = csv::Reader::from_reader(csv.as_bytes());
         let cells = table.records().next().unwrap().unwrap();
         assert!(cells[2].parse::<f64>().is_ok(), "{row}");
-        // The table's column with the students contains the name of the file.
+        // The first column has the name of the file, and the seventh the name of the student. The
+        // student's name is taken from the file's name, so the cells are equal.
         assert_eq!(cells[0], cells[6], "{row}");
     }
 }

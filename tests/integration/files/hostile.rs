@@ -80,7 +80,7 @@ pub(super) fn run_with_deadline(folder: &Folder, arguments: &[&str]) -> Outcome 
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // On an idle machine, the command takes at most a second. The limit allows for a busy one.
+    // The command takes at most a second on an idle machine. A busy machine may need more time.
     let end = Instant::now() + Duration::from_secs(10);
     while child.try_wait().unwrap().is_none() {
         if Instant::now() > end {
@@ -203,8 +203,9 @@ fn default_and_folder_outputs_never_follow_links_or_special_files() {
                 "link to a folder outside" => symlink(outside.path("deep"), &path).unwrap(),
                 _ => create_special_file(what, name, &folder),
             }
-            // In two cases, there is nothing in the way of the command: nothing exists at the path,
-            // or the path is `out/b`, where `report` needs a folder, and there is one.
+            // Two cases are skipped, because the command succeeds in them. In one, nothing exists
+            // at the path. In the other, the path is `out/b`, where `report` needs a folder, and
+            // there is one.
             if what == "nothing" || (what, name) == ("folder", "out/b") {
                 continue;
             }

@@ -1,5 +1,5 @@
-//! Tests of interrupted writing: another program saves the same file, the folder is read-only, or
-//! the process is killed.
+//! Tests of saving a file in difficult cases: another program saves the same file, the folder is
+//! read-only, or the process is killed.
 
 use std::{
     fs,
@@ -49,8 +49,8 @@ fn a_concurrent_save_of_another_program_is_never_overwritten() {
     }
 }
 
-/// Id of a user and of a group without special rights (`nobody`), as which a command runs if root
-/// runs the tests.
+/// User id and group id of `nobody`, a user without special rights. If root runs the tests,
+/// commands run as this user, because root may write everywhere.
 const USER: u32 = 65534;
 
 fn is_root() -> bool {
@@ -58,8 +58,8 @@ fn is_root() -> bool {
     fs::metadata("/proc/self").is_ok_and(|found| found.uid() == 0)
 }
 
-/// Makes the subfolder `closed` read-only. If root runs the tests, makes [`USER`] the owner of the
-/// scene in it and of the home folder.
+/// Makes the subfolder `closed` read-only. If root runs the tests, also makes [`USER`] the owner of
+/// the folder, of both subfolders and of the scene.
 fn give_to_user(folder: &Folder) {
     for (name, mode) in [
         ("", 0o755),
@@ -233,7 +233,9 @@ fn rewriting_a_file_grants_no_rights_to_another_group() {
     if !is_root() {
         return;
     }
-    // A user may give a file to a supplementary group of the user, but to no other group.
+    // A user may give a file only to a group to which the user belongs. So the rewritten file keeps
+    // its group in the first case; in the second, it gets the user's group, and the permissions of
+    // the group are removed.
     for (owner, groups, after) in [
         (1234, "--groups=1235", (USER, 1235, 0o660)),
         (USER, "--clear-groups", (USER, USER, 0o600)),

@@ -117,7 +117,8 @@ fn a_new_file_appears_complete_and_replaces_nothing() {
     assert_eq!(folder.read("a"), b"new");
     let error = new("there").unwrap_err();
     assert_eq!(error.kind(), io::ErrorKind::AlreadyExists);
-    // Writing a new file also fails if another program creates a file of this name meanwhile.
+    // If another program creates a file of this name before the new file is complete, writing
+    // fails.
     let path = folder.path("b");
     let late = files::write(&path, Purpose::New, &AtomicBool::new(false), |out| {
         folder.write("b", "theirs");
@@ -163,8 +164,8 @@ fn a_file_changed_since_it_was_read_is_not_overwritten() {
         for (number, purpose) in [Purpose::Change(&original), again].into_iter().enumerate() {
             let changed = || {
                 files::write(&path, purpose, &AtomicBool::new(false), |out| {
-                    // The other program changes the file during the first write. The second write
-                    // finds the file already changed.
+                    // Another program changes the file during the first write. It is then already
+                    // changed before the second write begins.
                     if number == 0 {
                         meanwhile();
                     }

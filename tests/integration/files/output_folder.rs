@@ -106,8 +106,8 @@ fn an_unchanged_file_list_is_not_rewritten() {
         out.write(&[("a".to_owned(), "text".to_owned())]).unwrap();
     };
     write();
-    // The hard link keeps the inode of the old file in use. A rewritten file would therefore have
-    // another inode number.
+    // The hard link keeps the inode of the old file in use, so a rewritten file would get another
+    // inode number.
     fs::hard_link(folder.path("out/.pinhole"), folder.path("first")).unwrap();
     let before = inode();
     write();

@@ -11,7 +11,7 @@ use pinhole::film::{Coding, read_picture};
 const TEXT: &str = "P3\n3 2\n255\n1 2 3 4 5 6 7 8 9\n10 11 12 13 14 15 16 17 18\n";
 
 /// Returns the picture of [`TEXT`] in binary form. Two of its values, 10 and 13, are the bytes of a
-/// line feed and a carriage return, which text modes change.
+/// line feed and a carriage return. A program that writes in text mode changes such bytes.
 fn bytes() -> Vec<u8> {
     let numbers: Vec<u8> = (1..=18).collect();
     [b"P6\n3 2\n255\n", &numbers[..]].concat()

@@ -45,13 +45,13 @@ fn a_mean_equals_the_quotient_in_extended_precision() {
 
 #[test]
 fn a_mean_is_rounded_once() {
-    // The sum is 3 · 0.1 + 7 · 0.3. As doubles, 0.1 is 0.1000000000000000055511151231257827, and
-    // 0.3 is 0.299999999999999988897769753748. So the exact mean is about 0.24 − 6e-18. Its nearest
-    // double is the same as that of 0.24, because neighbouring doubles are 28e-18 apart.
+    // The mean is (3 · 0.1 + 7 · 0.3) / 10. As doubles, 0.1 is too large by 5.6e-18, and 0.3 is too
+    // small by 11.1e-18. So the exact mean of the doubles is 0.24 − 6.1e-18. Near it, doubles are
+    // 28e-18 apart, and the nearest one is also the nearest to 0.24.
     let found = mean([(3, [0.1; 3]), (7, [0.3; 3])].into_iter());
     assert_eq!(found, [0.24; 3]);
-    // One of 2^53 samples is black, so the mean is exactly 1 − 2^−53. If the samples were added one
-    // by one, rounding would lose the black one.
+    // All of the 2^53 samples are white except one, which is black. So the mean is exactly 1 −
+    // 2^−53, the largest double below 1.
     let found = mean([((1 << 53) - 1, [1.0; 3]), (1, [0.0; 3])].into_iter());
     assert_eq!(found, [1.0 - f64::EPSILON / 2.0; 3]);
 }

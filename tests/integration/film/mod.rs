@@ -73,8 +73,8 @@ fn a_png_is_truecolour_with_no_unexpected_chunks() {
     let mut kinds: Vec<_> = chunks.iter().map(|(kind, _)| *kind).collect();
     kinds.dedup();
     assert_eq!(kinds, ["IHDR", "sRGB", "iTXt", "IDAT", "IEND"]);
-    // The header contains the width, the height, 8 bits per channel, and the codes for RGB colours
-    // and for no interlacing.
+    // The header contains the width, the height, 8 bits per channel, and the code 2 for RGB
+    // colours. The three zeros stand for the usual compression and filters, and for no interlacing.
     assert_eq!(chunks[0].1, [0, 0, 0, 31, 0, 0, 0, 17, 8, 2, 0, 0, 0]);
     let read = image::load_from_memory(&png).unwrap().into_rgb8();
     for (x, y, pixel) in read.enumerate_pixels() {
@@ -124,7 +124,8 @@ fn a_recipe_beyond_the_text_limit_is_left_out() {
     assert!(!many.fits());
 }
 
-/// A decoder's message may quote a part of the file, which can have any length.
+/// A decoder's message may quote a part of the file, which can have any length. The program
+/// therefore limits the length of its own messages.
 #[test]
 fn picture_errors_are_at_most_300_characters_long() {
     let long = "x".repeat(5000);
@@ -141,7 +142,8 @@ fn picture_errors_are_at_most_300_characters_long() {
         "\u{89}PNG\r\n\u{1a}\nLONG",
     ];
     for head in heads {
-        // The head is encoded in Latin-1, in which each character is one byte.
+        // Each character is written as one byte, so that `\u{89}` becomes the first byte of a PNG
+        // file.
         let bytes: Vec<u8> = head
             .replace("LONG", &long)
             .chars()
@@ -160,8 +162,8 @@ fn a_damaged_png_never_yields_a_changed_recipe() {
         assert!(matches!(read_recipe(&png[..length]), Err(NotOurs::Damaged)));
     }
     // No flipped bit may cause a panic. A flipped bit in the header must be detected by the
-    // checksum. A flipped bit after the scene has no effect, because the rest of the file is not
-    // read.
+    // checksum. A flipped bit in the pixels has no effect, because only the part of the file before
+    // the pixels is read.
     for bit in 0..8 * png.len() {
         let mut flipped = png.clone();
         flipped[bit / 8] ^= 1 << (bit % 8);
@@ -255,7 +257,9 @@ fn a_small_file_of_a_huge_picture_is_refused() {
     assert!(bytes.len() < 1 << 20);
     let large = "it has 20000 × 20000 pixels, which are decoded to more than the 268435456 bytes that are read";
     assert_eq!(read_picture(&bytes).unwrap_err().to_string(), large);
-    // The limit on memory counts four channels per pixel, each as large as the file's channels.
+    // A limit on memory allows for four channels per pixel, although the file has only one. A
+    // channel takes one byte in memory if the file has 1 bit per channel, and two bytes if it has
+    // 16.
     for (depth, size) in [(BitDepth::One, 4 * 6), (BitDepth::Sixteen, 8 * 6)] {
         let bytes = png(
             [3, 2],
@@ -299,7 +303,7 @@ fn an_exr_stores_means_as_floats_and_the_position_of_the_crop() {
         let mut bytes = Cursor::new(Vec::new());
         write_exr(&film, part, whole, &mut bytes).unwrap();
         let bytes = bytes.into_inner();
-        // A picture of 32-bit floats yields the same bytes.
+        // Films of `f64` and `f32` must give the same file, because its channels are 32-bit floats.
         let floats: Film<[f32; 3]> =
             Film::from_fn(33, 70, |x, y| film.pixel(x, y).map(|light| light as f32)).unwrap();
         let mut same = Cursor::new(Vec::new());

@@ -5,9 +5,9 @@ use pinhole::{diagnostic::apply, source::SourceId};
 use super::{Trial, diagnostics};
 use crate::{diagnostics::codes, scenes::sources, snapshot::assert_answers};
 
-/// Applies the first fix again and again until no problem has a fix. It applies one at a time,
-/// because a fix may move the text of later ones. Returns the resulting text, or `None` if the text
-/// had no fix.
+/// Applies the first fix again and again until no problem has a fix. Only one fix is applied at a
+/// time, because a fix may move the text of later ones. Returns the resulting text, or `None` if
+/// the text had no fix.
 fn mended(text: &str) -> Option<String> {
     let mut trial = Trial::default();
     trial.apply_fixes(&sources(text), |_, _| true);

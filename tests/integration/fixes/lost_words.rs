@@ -1,6 +1,6 @@
 //! Checks that safe fixes keep every number and every name. A fix may replace a name by a similar
 //! known name, and may add only keywords, units and punctuation. A separate scanner reads the words
-//! of a text, also those in comments, so that it notices lost comments.
+//! of a text, also those in comments, so that lost comments are noticed.
 
 use pinhole::{
     diagnostic::Applicability,
@@ -12,8 +12,9 @@ use pinhole::{
 
 use crate::random::Random;
 
-/// Spellings of units, separated by spaces. The factor beside them converts a length to metres, or
-/// an angle to degrees or radians.
+/// Spellings of units, separated by spaces, each row with the factor by which a number with this
+/// unit is multiplied. Lengths are thus compared in metres. Angles in degrees or radians keep their
+/// numbers; gons become degrees.
 const UNITS: [(&str, f64); 9] = [
     ("cm", 0.01),
     ("mm", 0.001),
@@ -34,12 +35,12 @@ struct Words {
 }
 
 impl Words {
-    /// Reads the words of `text`. With `is_two`, a field's name that is written together with its
-    /// value, such as `radius2`, is read as two words. So is `centerball`, but only if `ball` is
-    /// also a word in the whole text `all`.
+    /// Reads the words of `text`. If `is_two` is set, a field's name that is joined to its value,
+    /// such as `radius2`, is read as two words. A word such as `centerball` is split only if `ball`
+    /// is also a word of the whole text `all`.
     fn of(text: &str, all: &str, is_two: bool) -> Self {
         let mut words = Self::default();
-        // A zero-width character is not part of a number.
+        // A zero-width space is invisible and not part of a number, so it is removed.
         let text = &text.replace('\u{200b}', "");
         let mut rest = text.as_str();
         let mut is_number_before = false;
@@ -77,7 +78,8 @@ impl Words {
                 match UNITS.iter().find(is_it).filter(|_| is_number_before) {
                     Some((_, factor)) => {
                         *words.numbers.last_mut().unwrap() *= factor;
-                        // A unit may be written twice, as in `30deg degrees`.
+                        // A unit may be written twice, as in `30deg degrees`, so the next word may
+                        // be a unit, too.
                         continue;
                     }
                     None => words.names.push(word.to_owned()),
@@ -203,9 +205,9 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
         complaints.push(format!("numbers are lost: {lost:?}"));
     }
     // Two words in a row, such as `look at`, may form a known word, `lookat`, if they are joined.
-    // The words alone do not show whether a fix has joined them. For the last four pairs of this
-    // kind in the text, both possibilities are tried. Of all combinations, the one with the fewest
-    // lost and added names counts.
+    // The words alone do not show whether a fix has joined them, so both possibilities are tried
+    // for the last four such pairs in the text. The combination with the fewest lost and added
+    // names is used.
     const WAYS: i32 = 1 << 4;
     let read = |of| [true, false].map(|is_two| words(of, is_two).names);
     let (before, after) = (read(text), read(&fixed.text));
@@ -241,16 +243,18 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
 }
 
 /// Returns the names of `before` that are not in `after`, and the names of `after` that are not in
-/// `before`. Pairs of words in `before` that would form a known word, such as `look at`, are
-/// numbered from the end of the text. Bit k of `joins` says whether a fix is assumed to have joined
-/// pair k; the sign bit applies to all further pairs.
+/// `before`.
+///
+/// Two words in a row in `before` may form a known word if they are joined, such as `look at`. Bit
+/// k of `joins` says whether to assume that a fix has joined such a pair; k is the pair's number,
+/// counted backwards from the end of the text. The sign bit applies to all further pairs.
 fn unmatched_names(
     before: &[String],
     after: &[String],
     mut joins: i32,
 ) -> (Vec<String>, Vec<String>) {
     let (mut names, mut new) = (before.to_vec(), after.to_vec());
-    // The field `lookat` may be written as two words, `look at`.
+    // Only a known word can be the result of joining two words, as `lookat` is of `look at`.
     let is_known = |word: &String| {
         BLOCKS.iter().any(|block| block.field(word).is_some())
             || schema::css::color(word).is_some()

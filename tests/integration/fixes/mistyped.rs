@@ -44,8 +44,8 @@ fn fixes_of_syntax_slips_remove_their_problem_and_add_no_error() {
             let twice = format!("{token} {token}");
             for slip in ["", &twice, other, &format!("{token} {other}")] {
                 let wrong = format!("{}{slip}{}", &text[..start], &text[end..]);
-                // The parser does not report a missing value of a field. Only the translation to a
-                // scene does.
+                // The parser does not report a missing value of a field; only the translation to a
+                // scene does. This problem is therefore left out.
                 trial.apply_fixes(&sources(&wrong), |d, _| {
                     d.is_of_syntax && d.code != "pinhole::missing_value"
                 });
@@ -55,7 +55,8 @@ fn fixes_of_syntax_slips_remove_their_problem_and_add_no_error() {
     trial.finish_with_more_than(500);
 }
 
-/// In each text, one word, number or innermost list is replaced by another one.
+/// In each text, one word, number or list is replaced by another one. A list that contains lists is
+/// not replaced as a whole.
 #[test]
 fn fixes_of_semantic_slips_remove_their_problem_and_add_no_error() {
     let mut trial = Trial::default();
@@ -89,7 +90,7 @@ fn fixes_of_semantic_slips_remove_their_problem_and_add_no_error() {
     trial.finish_with_more_than(500);
 }
 
-/// Returns wrong replacements of `piece`, which is a word, a number or an innermost list.
+/// Returns wrong replacements of `piece`, which is a word, a number or a list without inner lists.
 fn slips_in_meaning(piece: &str) -> Vec<String> {
     let (mut slips, fixed) = match piece.chars().next() {
         Some('(') if piece.len() > 1 => {

@@ -1,4 +1,5 @@
-//! Tests of the fixes that diagnostics offer. Each removes its problem and adds no new error.
+//! Tests of the fixes that diagnostics offer. Each fix must remove its problem and add no new
+//! error.
 
 mod answers;
 mod delimiters;

@@ -184,7 +184,8 @@ fn suggested_fields_and_targets_are_valid_where_they_are_suggested() {
             trial.apply_fixes(&sources, |problem, _| is_meant(problem));
         }
     }
-    // A field that the language does not have in the block is an error.
+    // `Bal` is near the sphere's name `Ball`, but a sphere has no field `size`, so this is an
+    // error.
     assert!(!diagnostics(&sources(&scene).with_sets(["Bal.size=3"])).is_empty());
     trial.finish_with_more_than(500);
 }

@@ -19,8 +19,8 @@ fn foreign() -> Vec<String> {
     names.into_iter().map(read).collect()
 }
 
-/// Returns each line of a file, and the rest of the file from each line on. The start of a text
-/// matters, because it may reveal the language.
+/// Returns each line of a file, and the rest of the file from each line on. Each of these texts
+/// begins differently, and the beginning may reveal of which language a text is.
 fn pieces(text: &str) -> Vec<String> {
     let lines: Vec<&str> = text.lines().collect();
     let rest = (0..lines.len()).map(|at| lines[at..].join("\n"));

@@ -15,8 +15,8 @@ pub fn gaps() -> impl Strategy<Value = Vec<&'static str>> {
     vec(one_of(gaps, '|'), 200)
 }
 
-/// Joins the tokens in `tokens`, which spaces separate, with the gaps `gaps`. Adds a space where
-/// two tokens would otherwise merge or begin a comment.
+/// Joins the space-separated tokens in `tokens` with the gaps `gaps`. Adds a space where two tokens
+/// would otherwise merge or begin a comment.
 pub fn spaced(tokens: &str, gaps: &[&str]) -> String {
     let mut text = String::new();
     let is_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '#');
@@ -43,7 +43,8 @@ fn value() -> impl Strategy<Value = String> {
                     *open != "(" || !values.is_empty()
                 })
                 .prop_map(|(open, values)| format!("{open} {} )", values.join(" , ")));
-            // A list with one element per line, each followed by a comment.
+            // A list whose elements end with `,` and a line end, most of them with a comment in
+            // between.
             let remark = one_of("|\t//\tx|\t//\tof\tthe\tleft|\t/*\ty\t*/|\n//\town", '|');
             let explained = (one_of("(|max (", '|'), vec((inner.clone(), remark), 1..4)).prop_map(
                 |(open, values)| {
@@ -94,8 +95,9 @@ proptest! {
         if style == "crlf" {
             text = text.replace("\r\n", "\n").replace('\n', "\r\n");
         }
-        // `--` may be a double minus sign. It is still reported, because it looks like a comment of
-        // another language.
+        // Texts with `--` before a space or a tab are skipped. Such a `--` may be a double minus
+        // sign, but it is reported as an error, because it looks like a comment of another
+        // language.
         prop_assume!(!text.contains("-- ") && !text.contains("--\t"));
         assert_formatter_laws(&text, &formatted(&text).unwrap());
     }

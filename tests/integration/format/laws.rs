@@ -47,7 +47,8 @@ pub fn assert_formatter_laws(text: &str, formatted_text: &str) {
     }
     // Two empty lines in a row occur only within a comment.
     for (at, _) in formatted_text.match_indices("\n\n\n") {
-        // The characters `/*/` begin a comment and do not end it.
+        // The characters `/*/` begin a comment and do not end it, so they are replaced before the
+        // search for `*/`.
         let before = formatted_text[..at].replace("/*/", "/* ");
         assert!(
             before.rfind("/*") > before.rfind("*/"),

@@ -99,7 +99,8 @@ fn place(random: &mut Random, text: &str) -> (usize, Value) {
     let places: Vec<usize> = (0..=text.len())
         .filter(|at| text.is_char_boundary(*at))
         .collect();
-    // No position lies between the CR and the LF of a line end.
+    // The protocol has no position between the CR and the LF of a line end. If the random offset
+    // lies there, the position before the CR is taken.
     let is_within = |at: usize| text[..at].ends_with('\r') && text[at..].starts_with('\n');
     let mut at = *random.one_of(&places);
     if is_within(at) {
@@ -183,7 +184,8 @@ fn the_server_still_answers_after_any_message() {
             if random.below(2) == 0 {
                 flip(random, &mut bytes);
             }
-            // If a malformed message gets no answer, the client of the test panics.
+            // A message without `method` may look like a response, and a message `exit` ends the
+            // server. Such messages are not sent.
             let text = String::from_utf8_lossy(&bytes);
             if text.contains("method") && !text.contains("exit") {
                 client.transport.write(&text);

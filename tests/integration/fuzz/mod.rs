@@ -35,8 +35,8 @@ pub fn ends_soon<T>(what: impl Fn() -> String + Sync, run: impl FnOnce() -> T) -
     thread::scope(|scope| {
         scope.spawn(move || {
             if is_done.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
-                // The test harness prints a test's output only at the end of the test, which is
-                // never reached.
+                // The test harness would print a test's output only at the end of the test, which
+                // is never reached. So the text is written directly to the standard error stream.
                 let _ = writeln!(io::stderr(), "this does not end: {}", what());
                 process::abort();
             }

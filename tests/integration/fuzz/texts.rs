@@ -65,10 +65,8 @@ fn assert_formatted(text: &str) {
     }
 }
 
-/// Texts that once failed. The reasons were: two fixes that remove the same space; a label that
-/// begins inside a character; two hundred fixes that each add a parenthesis in one place; a comment
-/// with empty lines; a comment inside a hyphenated name; functions of other languages, and values,
-/// on a new line; and indices without a `{`, written like a field.
+/// Texts that once made a test of random texts fail, for example because two fixes removed the same
+/// space, or because a label began inside a character.
 #[test]
 fn texts_found_by_fuzzing_stay_fixed() {
     let (deep, minuses) = ("(".repeat(220), "−".repeat(300));

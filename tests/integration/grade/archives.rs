@@ -57,7 +57,8 @@ fn a_zip_file_is_graded_as_a_class_and_no_entry_escapes_it() {
     ]);
     // The name is in code page 437, in which 0x81 is ü and 0x82 is é.
     patch(&mut file, b"fXnn/", b"f\x81nn/");
-    // The entry is marked as encrypted, by a flag before each of its two names.
+    // Marks an entry as encrypted. A zip file has a header before the entry and one in the list of
+    // entries, each with a name and, before the name, flags.
     for (head, flags) in [(30, 6), (46, 8)] {
         let name = b"dora/Xecret.png";
         let names: Vec<_> = (head..file.len() - name.len())

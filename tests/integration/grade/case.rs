@@ -1,6 +1,6 @@
 //! A picture with which the grading is tested. Its title says everything about it: the scene, the
-//! size, samples per pixel, the sampling, and the mistakes. A picture with 256 samples per pixel
-//! counts as exact.
+//! size, samples per pixel, the sampling, and the mistakes. Pictures with 256 samples per pixel
+//! stand for exact pictures.
 
 use image::RgbImage;
 use serde_json::Value;

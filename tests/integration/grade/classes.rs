@@ -1,5 +1,5 @@
-//! Tests with classes as students hand them in: exports of Gradescope, GitHub Classroom and Moodle,
-//! with unrelated files in them.
+//! Tests of grading whole classes, in the form in which Gradescope, GitHub Classroom and Moodle
+//! export them. The exports contain unrelated files, too.
 
 use std::{
     fs::File,
@@ -138,7 +138,8 @@ fn an_export_of_gradescope_is_a_class() {
             "wrong",
             &["photo.heic", LOGO],
         ),
-        // The logo of the template is in every folder, so it is not the picture of any student.
+        // `starter/logo.png` is in every student's folder: it belongs to the assignment's template.
+        // It is therefore not the picture of any student.
         ("Dora", "export/submission_3", "error", &[LOGO]),
         ("eve@example.org", "export/submission_4", "error", &[]),
     ];
@@ -162,7 +163,8 @@ fn clones_of_github_classroom_are_a_class() {
             put(&folder, &[(&path, content)]);
         }
     }
-    // The files of a clone have arbitrary times, so an older file is not worse than a newer one.
+    // Cloning a repository gives its files arbitrary times, so an older file is not worse than a
+    // newer one.
     age(&folder, "hw1-submissions/hw1-anna/render.png", 5);
     put(
         &folder,
@@ -323,7 +325,8 @@ fn loose_files_belong_to_students_and_the_output_folder_does_not() {
     }
 }
 
-/// A file that is in every folder counts as a template only if a student has another file as well.
+/// A picture that is in every student's folder is regarded as part of the assignment's template.
+/// This holds only if at least one student has another picture as well.
 #[test]
 fn a_picture_in_every_folder_is_a_template_only_beside_others() {
     let folder = folder();
@@ -341,8 +344,8 @@ fn a_picture_in_every_folder_is_a_template_only_beside_others() {
             ("ben", "class/ben/render.png", "wrong", &[]),
         ],
     );
-    // One student has a second picture. The picture that all students have then counts as part of
-    // the assignment's template, unless `--picture` names it.
+    // Now one student has a second picture. Therefore, the picture that all students have is
+    // regarded as part of the assignment's template, unless `--picture` names it.
     put(&folder, &[("class/ben/test.png", "size.png")]);
     let given = ["render.png (equal in every folder: --picture chooses it)"];
     let others: &[(&str, &str, &str, &[&str])] = &[
@@ -376,8 +379,9 @@ fn a_folder_around_an_export_is_graded_as_the_export() {
         ("h/hw-submissions/hw-anna/x.png", "right.png"),
         ("h/hw-submissions/hw-anna/.git/HEAD", "ref"),
         ("h/hw-submissions/hw-ben/.git/HEAD", "ref"),
-        // The files belong to two students. One has a clone in the folder, the other a file with
-        // the name of another student.
+        // In the folder `s`, the folders `anna` and `ben` belong to two students. The clone of a
+        // repository in the one, and the name of another student (`Li`) in the other, change
+        // nothing.
         ("s/anna/tracer/x.png", "right.png"),
         ("s/anna/tracer/.git/HEAD", "ref"),
         ("s/ben/Li_3_assignsubmission_file_x.png", "red.png"),

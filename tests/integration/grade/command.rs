@@ -31,7 +31,7 @@ fn class() -> Folder {
     for [name, arguments, _, _] in rows(PICTURES) {
         folder.told(&format!("render a.scn -o class/{name} {arguments}"), 0);
     }
-    // A PNG file can contain its scene. Saving the picture again removes the scene.
+    // A PNG file can contain its scene. This picture is saved again, so that it contains no scene.
     let sky = folder.path("class/sky.png");
     image::open(&sky).unwrap().to_rgb8().save(&sky).unwrap();
     folder
@@ -120,7 +120,7 @@ fn each_picture_has_a_line_in_every_form() {
         "grade a.scn class/exact.exr class/random.png --threads 1",
         0,
     );
-    // A file on the command line counts as a picture, whatever its extension is.
+    // A file on the command line is always read as a picture, even if it has no extension.
     folder.write("picture", folder.read("class/exact.exr"));
     folder.told("grade a.scn picture --picture x.png", 0);
     let read = folder.run_reading("grade a.scn -", folder.read("class/exact.exr"));

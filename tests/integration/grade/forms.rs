@@ -149,6 +149,26 @@ fn gradescope_gets_a_score_only_where_it_is_known() {
     assert_eq!(found["score"], 5.0);
 }
 
+#[test]
+fn mistakes_in_all_objects_of_a_block_belong_to_its_first_object() {
+    const BALLS: &str = "\
+camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+sphere Ball for i < 2 { center (4 * i - 2, 1, 0)  radius 1  color teal }
+image { width 64  height 36 }
+";
+    let folder = Folder::with([
+        ("a.scn", BALLS),
+        ("b.scn", &BALLS.replace("radius 1", "radius 1.4")),
+    ]);
+    folder.told("render b.scn -o b.png", 0);
+    let said = folder.run("grade a.scn b.png --format gradescope");
+    let found: Value = serde_json::from_slice(&said.output).unwrap();
+    let tests = found["tests"].as_array().unwrap().iter();
+    let failed = tests.filter(|test| test["status"] == "failed");
+    let failed: Vec<_> = failed.map(|test| test["name"].as_str().unwrap()).collect();
+    assert_eq!(failed, ["sphere Ball[0]"]);
+}
+
 const WORKSHEET: &str = "\u{feff}Identifier,\"Full name\",Grade,\"Maximum Grade\",\"Grade can be changed\",\"Last modified (grade)\",\"Feedback comments\"\r
 \"Participant 1\",\"A, A\",,20.00,Yes,-,\r
 \"Participant 2\",B,\"1,50\",20.00,Yes,-,\"old\r\ntext\"\r
@@ -212,8 +232,9 @@ fn a_worksheet_of_moodle_keeps_everything_but_grades_and_comments() {
         ]
     );
     assert!(new[1][6].contains("<br>- the image has a wrong colour"));
-    // Without a scheme of points, the grades in the worksheet stay as they are. In other languages,
-    // the columns have other names.
+    // Without a scheme of points, the grades in the worksheet stay as they are. This is tested with
+    // a German worksheet: its columns have German names, so `--columns` must say which column is
+    // which.
     let german = WORKSHEET
         .replace("Grade,", "Bewertung,")
         .replace("Feedback comments", "Feedback als Kommentar");
@@ -237,7 +258,8 @@ fn a_worksheet_of_moodle_keeps_everything_but_grades_and_comments() {
         told.contains("its grades go up to 10, and the points to 20"),
         "{told}"
     );
-    // Spreadsheet programs save a worksheet with semicolons or in UTF-16.
+    // Spreadsheet programs may save a worksheet with semicolons or in UTF-16. Such a worksheet is
+    // rejected with a hint.
     for bytes in [
         WORKSHEET.replace(',', ";").into_bytes(),
         WORKSHEET
@@ -290,8 +312,8 @@ fn a_crop_is_compared_with_the_part_that_is_named() {
         "render a.scn -o part.png --crop 4,3,10,12 --set sampler.method=exact",
         0,
     );
-    // A PNG file can state which crop of the picture it is. Saving it again removes this
-    // information.
+    // A PNG file can state which crop of the picture it is. This picture is saved again, so that it
+    // contains no such statement.
     let path = folder.path("part.png");
     image::open(&path).unwrap().to_rgb8().save(&path).unwrap();
     for command in ["grade a.scn part.png", "diff part.png a.scn"] {

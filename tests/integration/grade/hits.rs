@@ -8,8 +8,9 @@ impl Program {
     /// Returns the colour of the surface that a ray sees, and the factor by which shading
     /// multiplies the colour's light. The ray starts at `from`; `view` is the view direction.
     pub fn trace(&self, from: DVec3, ray: DVec3, view: DVec3) -> ([u8; 3], f64) {
-        // The program may treat surfaces behind the eye wrongly. Either they count as nearer than
-        // all others, or they are compared by distance like those in front of it.
+        // The program may treat surfaces behind the eye wrongly. It may compare the signed
+        // parameters t of the hits, so that surfaces behind the eye come first. Or it may compare
+        // all surfaces by their distance, whether they are in front of the eye or behind it.
         let order = |t: f64| {
             if self.behind == Behind::First {
                 t

@@ -1,5 +1,5 @@
-//! Tests of grading: the library judges pictures by an independent ray tracer, and the command
-//! `grade` judges classes.
+//! Tests of grading. The library judges pictures that an independent ray tracer renders, and the
+//! command `grade` judges classes.
 
 mod archives;
 mod case;
@@ -31,10 +31,10 @@ use crate::{
     images,
 };
 
-/// Titles of pictures, one per line: right pictures by every sampling, and pictures with the
-/// mistakes that students make. Each picture has as many samples per pixel as its mistake needs to
-/// be visible. For example, with 16 samples, noise at edges hides the use of the power 2.2 instead
-/// of the sRGB curve.
+/// Titles of pictures, one per line: correct pictures by every way of sampling, and pictures with
+/// the mistakes that students make. Each picture has as many samples per pixel as its mistake needs
+/// to be visible. For example, with 16 samples, noise at edges hides the use of the power 2.2
+/// instead of the sRGB curve.
 const PICTURES: &str = include_str!("pictures.txt");
 
 sampled_and_exhaustive!(the_mistakes_of_a_class_are_named);
@@ -51,7 +51,8 @@ fn the_mistakes_of_a_class_are_named(effort: Effort) {
     assert!(judged.is_empty(), "{}", judged.join("\n"));
 }
 
-/// The benchmark puts each mistake into each scene, and leaves out pictures that do not change.
+/// Makes each mistake in each scene. This must not panic, even if the scene lacks the object that
+/// the mistake is about.
 #[test]
 fn every_mistake_can_be_made_in_every_scene() {
     for name in [
@@ -85,8 +86,9 @@ fn wrongly_judged(case: &Case) -> Option<String> {
     let size = picture.dimensions().into();
     let file = images::png(size, ColorType::Rgb, BitDepth::Eight, picture.as_raw());
     let answer = answer(&case.text, &[], &file);
-    // A shift of all samples by half a pixel changes only edges, but it explains most of the
-    // difference if it is really there. A reported shift that explains less than half is wrong.
+    // The mistake `half_pixel` shifts all samples by half a pixel. If it is really there, it
+    // explains most of the difference between the pictures. A `half_pixel` that explains less than
+    // half of the difference is therefore a wrong answer.
     let is_half = |one: &Value| one["id"] == "half_pixel" && one["explains"].as_f64() < Some(0.5);
     let mut mistakes = answer["mistakes"].as_array().unwrap().iter();
     if !case.is_judged_correctly(&answer) || mistakes.any(is_half) {
@@ -129,7 +131,8 @@ fn answer(text: &str, sets: &[&str], file: &[u8]) -> Value {
     Value::Object(verdict.unwrap().to_json())
 }
 
-/// If a picture is mirrored, a part at one side of it shows what the scene has on the other side.
+/// Judges a part of a picture that is mirrored and has one more mistake. The mirrored part shows
+/// what the scene has on the picture's other side.
 #[test]
 fn a_part_of_a_mirrored_picture_with_one_more_mistake() {
     let scene = |sets: &[&str]| {

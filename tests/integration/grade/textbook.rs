@@ -69,7 +69,7 @@ pub enum Behind {
     Unseen,
     /// Surfaces behind the eye are compared by their distance, as if they were in front of it.
     ByDistance,
-    /// Surfaces behind the eye count as nearer than all surfaces in front of it.
+    /// Surfaces behind the eye are regarded as nearer than all surfaces in front of it.
     First,
 }
 
@@ -83,38 +83,41 @@ pub enum Squares {
     Floored,
     /// The number of a square is the sum of its two coordinates, each truncated towards zero.
     Truncated,
-    /// The number of a square is the sum of its two coordinates, each rounded down. It counts as
-    /// odd if its remainder after division by 2 is 1. The remainder of negative odd sums is −1, so
-    /// they count as even.
+    /// The number of a square is the sum of its two coordinates, each rounded down. The program
+    /// regards the number as odd if its remainder after division by 2 is 1. The remainder of a
+    /// negative odd number is −1, so the program regards it as even.
     Remainder,
-    /// The number of a square counts as odd if the remainders of its two coordinates, each rounded
-    /// down, after division by 2 differ. The remainder of negative odd coordinates is −1.
+    /// Both coordinates are rounded down. The program regards the square's number as odd if the
+    /// coordinates leave different remainders after division by 2. The remainder of a negative odd
+    /// coordinate is −1, which differs from 1.
     Remainders,
     /// The number of a square is the sum of its two coordinates, each rounded to the nearest
     /// integer.
     Rounded,
-    /// The number is the first coordinate, rounded to the nearest integer, plus the second, rounded
-    /// down.
+    /// The number of a square is the first coordinate, rounded to the nearest integer, plus the
+    /// second coordinate, rounded down.
     Moved,
-    /// The number of a square is the sum of its two coordinates, rounded down only afterwards.
+    /// The two coordinates are added first. The number of a square is their sum, rounded down.
     Sum,
     /// The number of a square is the first coordinate, rounded down, so that the board has stripes.
     Stripes,
     /// The number of a square is the second coordinate, rounded down, so that the board has
     /// stripes.
     StripesZ,
-    /// The number is the first coordinate, truncated towards zero, plus the second, rounded down.
+    /// The number of a square is the first coordinate, truncated towards zero, plus the second
+    /// coordinate, rounded down.
     TruncatedX,
-    /// The number is the first coordinate, rounded down, plus the second, rounded to the nearest
-    /// integer.
+    /// The number of a square is the first coordinate, rounded down, plus the second coordinate,
+    /// rounded to the nearest integer.
     MovedZ,
-    /// The number is the sum of the coordinates, each rounded down, of a board that is turned by 45
-    /// degrees.
+    /// The board is turned by 45 degrees. The number of a square is the sum of its coordinates on
+    /// the turned board, each rounded down.
     Turned,
-    /// The number is odd if at least one of the two coordinates, rounded down, is odd.
+    /// The number of a square is regarded as odd if at least one of the two coordinates, rounded
+    /// down, is odd.
     BothEven,
-    /// The number of a square counts as odd if sin(x) · sin(z) is negative, where x and z are its
-    /// coordinates in units of the square's side.
+    /// The number of a square is regarded as odd if sin(x) · sin(z) is negative, where x and z are
+    /// its coordinates in units of the square's side.
     Sines,
 }
 
@@ -154,7 +157,8 @@ pub enum Axes {
     LongRays,
     /// All rays have the same direction, −w, i.e. the view direction.
     Parallel,
-    /// All rays are parallel, and the window is as large as what the camera sees at `lookat`.
+    /// All rays are parallel. The window is moved to `lookat` and enlarged, so that the camera sees
+    /// it at the same angle.
     ParallelFromLookat,
 }
 
@@ -200,9 +204,11 @@ pub struct Program {
     pub sampling: Sampling,
     /// Number of samples per pixel, which must be a square number.
     pub samples: u32,
-    /// Whether the program uses the window's height as its width.
+    /// Whether the program uses the correct height of the window as its width. The window's height
+    /// is then wrong, too, because pixels stay square.
     pub is_wide: bool,
-    /// Whether the program's window is as wide as it is high.
+    /// Whether the program's window is square even if the picture is not, so that objects are
+    /// distorted.
     pub is_squeezed: bool,
     /// Whether the centres of the outermost pixels lie on the window's border.
     pub reaches_borders: bool,
@@ -348,8 +354,9 @@ impl Program {
         }
     }
 
-    /// Decodes a channel of a colour, from 0 to 1, to light. The program encodes light by the
-    /// inverse function, unless `encoding` is [`Encoding::None`] or [`Encoding::Twice`].
+    /// Decodes a channel of a colour, from 0 to 1, to light. Normally, the result is encoded to the
+    /// same channel again. If `encoding` is [`Encoding::None`] or [`Encoding::Twice`], it is
+    /// encoded to another one, because these encodings are mistakes.
     fn decode(&self, part: f64) -> f64 {
         match self.encoding {
             Encoding::Power(power) => libm::pow(part, power),

@@ -40,8 +40,8 @@ fn said(_: &Sources, found: &Diagnostic) -> String {
     format!("{}: {} | {label} | {help}", code(found), found.message)
 }
 
-/// Applies the function `remove`, which makes a fix, to the part of `text` in brackets. Returns the
-/// new text, followed by the title of the fix, which mentions removed comments.
+/// Makes a fix by the function `remove`, which removes the part of `text` in brackets. Returns the
+/// new text, followed by the title of the fix. The title mentions removed comments.
 fn without(text: &str, remove: fn(String, Span, &Sources) -> Fix) -> String {
     let (start, end) = (text.find('[').unwrap(), text.find(']').unwrap() - 1);
     let sources = sources(&text.replace(['[', ']'], ""));

@@ -50,7 +50,8 @@ fn the_reference_lists_every_field_with_its_type_default_and_conditions() {
     assert_eq!(rows.len(), header_and_rule, "{rows:?}");
 }
 
-/// In the table of lenses, `d` is exact, and the angle beside it is correct to its last digit.
+/// In the table of lenses, each row gives a focal length by `d` and by `fov`. The value of `d` must
+/// be exact, and the angle correct to its last digit.
 #[test]
 fn the_lens_table_of_the_reference_is_exact() {
     let mut lenses = 0;

@@ -145,7 +145,8 @@ fn a_mistake_in_a_repeated_object_is_reported_once() {
     }
 }
 
-/// If a fix replaces a value that contains an index, the new value must contain the index, too.
+/// If a fix replaces a value that contains the index `i` of a repeated block, the new value must
+/// contain `i`, too.
 #[test]
 fn fixes_in_repeated_objects_keep_their_index() {
     let fields = "
@@ -184,8 +185,9 @@ fn fixes_in_repeated_objects_keep_their_index() {
     assert!(fixes > 50, "{fixes}");
 }
 
-/// A wrong head of a repeated block does not affect the next block. A repeated checkerboard causes
-/// only one warning. A later `let` may have the name of an index, even if there are overrides.
+/// A mistake after the `for` of a block does not affect the next block. A repeated checkerboard
+/// causes only one warning. A later `let` may have the name of an index, even if there are
+/// overrides.
 #[test]
 fn a_repetition_does_not_affect_the_text_around_it() {
     for (text, set, expected) in [

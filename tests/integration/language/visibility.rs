@@ -1,5 +1,5 @@
 //! Tests of the warnings about cameras that see nothing, and about squares too small to be visible.
-//! The warnings are never false, and most of these scenes get one.
+//! The warnings must never be false. They must be given in most cases in which they are true.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,8 @@ use crate::{
     scenes::{exact, read, sampled, sources},
 };
 
-/// Each tested scene contains only the first object of a generated scene.
+/// Each tested scene contains only the first object of a generated scene, so that many of the
+/// pictures are black.
 #[test]
 fn nothing_seen_is_never_false_and_found_for_half_the_black_pictures() {
     let (mut warned, mut black) = (0, 0);

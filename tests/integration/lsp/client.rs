@@ -127,8 +127,8 @@ pub const PATIENCE: Duration = Duration::from_secs(30);
 pub struct Pipes {
     child: Child,
     input: Option<ChildStdin>,
-    /// Texts of the server's messages. A separate thread reads them, so that a test need not wait
-    /// for ever.
+    /// Texts of the server's messages. A separate thread reads them and sends them here, because
+    /// this channel can be read with a time limit, unlike the server's output.
     said: Receiver<String>,
 }
 

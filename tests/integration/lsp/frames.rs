@@ -75,7 +75,7 @@ fn a_frame_has_the_pixels_of_a_render() {
         let (text, size) = match name {
             "exact" => (SCENE.replace("multi_jittered", "exact"), [83, 61]),
             "scattered" => (SCENE.replace("multi_jittered", "scatter"), [83, 61]),
-            // With so many samples, a slice of work is only a small part of the picture.
+            // With 2000 samples per pixel, a slice of work is only a small part of the picture.
             "many" => (SCENE.replace("per_pixel 9", "per_pixel 2000"), [83, 61]),
             "wide" => (sized("100_000", "2"), [100_000, 2]),
             _ => (SCENE.to_owned(), [83, 61]),
@@ -92,7 +92,7 @@ fn a_frame_has_the_pixels_of_a_render() {
 fn a_frame_of_an_outdated_text_is_refused() {
     let mut client = LocalClient::with(SCENE);
     let old = client.request("pinhole/frame", json!({}));
-    // The step publishes the diagnostics but does not complete the frame.
+    // This step of the server publishes the diagnostics but does not complete the frame.
     assert!(client.transport.step() && !client.has_answered(old));
     let changed = SCENE.replace("olive", "teal");
     client.change(2, json!({ "text": changed }));
@@ -105,7 +105,8 @@ fn a_frame_of_an_outdated_text_is_refused() {
 
 #[test]
 fn a_frame_that_is_cancelled_ends_at_once() {
-    // The frame consists of ten thousand slices, which would take minutes.
+    // The frame consists of ten thousand slices, which would take minutes. The test computes only a
+    // few of them.
     let text = sized("1000", "1000").replace("per_pixel 9", "per_pixel 10_000");
     let mut client = LocalClient::with(&text);
     let frame = client.request("pinhole/frame", json!({}));

@@ -22,8 +22,8 @@ fn root(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-/// Returns a command that runs a script in Neovim with a separate home folder. Its search path
-/// begins with the folder of the tested program.
+/// Returns a command that runs a script in Neovim with a separate home folder. The command's search
+/// path begins with the folder of the tested program.
 fn neovim(folder: &Folder, script: &Path) -> Command {
     let home = folder.path("");
     let mut neovim = Command::new("nvim");

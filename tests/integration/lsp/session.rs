@@ -62,7 +62,8 @@ fn malformed_lsp_input_is_logged_and_skipped() {
     assert!(log.contains("is not open"), "{log}");
 }
 
-/// A range of `null` does not say whether the change replaces a part of the text or the whole text.
+/// A range of `null` does not say whether the change replaces a part of the text or the whole text,
+/// so the change is ignored.
 #[test]
 fn a_change_with_an_invalid_range_leaves_the_text_unchanged() {
     let mut client = Client::start();
@@ -111,7 +112,7 @@ fn an_oversized_or_unfinished_message_ends_the_server_with_a_reason() {
     for (length, expected) in [
         ("99999999999999", "is announced"),
         ("2000000000", "is announced"),
-        // The announced length is just allowed, but the message ends before it.
+        // A message of the announced length is allowed, but the input ends after two bytes of it.
         ("1000000000", "after 2 of 1000000000 bytes"),
     ] {
         let mut client = Client::start();

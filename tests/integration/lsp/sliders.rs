@@ -4,8 +4,8 @@ use serde_json::{Value, json};
 
 use super::local_client::LocalClient;
 
-/// Returns the minimum, the maximum, the step and the ends of a slider. Returns null if `found` is
-/// null.
+/// Returns a list of the properties of a slider: the minimum and the maximum that the field allows,
+/// the step, and the numbers at the two ends of the slider. Returns null if `found` is null.
 fn limits(found: &Value) -> Value {
     match found {
         Value::Null => Value::Null,

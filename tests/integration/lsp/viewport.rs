@@ -228,8 +228,8 @@ fn an_added_object_takes_a_colour_that_is_not_in_use() {
     }
 }
 
-/// A new object touches the checkerboard, whatever the board's height is, even if the board is
-/// added later.
+/// A new object touches the checkerboard, whatever the board's height is. If the text has no
+/// checkerboard, a board that is added afterwards touches the object.
 #[test]
 fn an_added_object_stands_on_the_checkerboard() {
     let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
@@ -317,8 +317,8 @@ fn copying_a_block_does_not_move_its_trailing_comment() {
     }
 }
 
-/// A drag is refused if another field uses the number that it would change. This holds with and
-/// without a step.
+/// A drag is refused if another field uses the number that the drag would change. This holds both
+/// for drags that snap to round numbers (`step`) and for those that do not.
 #[test]
 fn dragging_a_number_shared_with_another_field_is_refused() {
     let text = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\nlet r = 1\n\
@@ -358,7 +358,8 @@ fn a_drag_with_a_step_snaps_to_round_numbers() {
                 .parse()
                 .expect("a number")
         });
-        // In the picture, 1 m is 90 pixels, so 0.01 m is 0.9 pixels and 0.1 m is 9 pixels.
+        // In the picture, 1 m is 90 pixels. The new x must be a multiple of 0.01 m, and within 0.02
+        // m of the x to which the pointer moved.
         match x {
             None => assert!(f64::abs(by) < 0.5, "{by}: {found}"),
             Some(x) => {

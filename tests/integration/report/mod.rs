@@ -52,12 +52,12 @@ fn a_report_prints_a_table_and_one_recommendation() {
             .unwrap()
     };
     for row in Method::SAMPLED.map(|method| row(method.name())) {
-        // The cells are: the method; the slope, `±` and the slope's error; the factor by which the
-        // error falls with four times the samples; the factor by which the samples must grow for a
-        // tenth of the error, and `×`; the number of samples; and two times, each followed by its
-        // unit.
+        // Words in a row are cells, so the row has twelve. The third cell, `±`, precedes the error
+        // of the slope. The seventh, `×`, follows the factor by which the number of samples must
+        // grow for a tenth of the error.
         assert_eq!((row.len(), row[2], row[6]), (12, "±", "×"), "{row:?}");
-        // The few measured samples do not reach an error of 1/256, so the values are extrapolated.
+        // The slope is negative. The measured samples are too few for an error of 1/256, so `~`
+        // marks the needed number of samples and the time as extrapolated.
         let are_first = [(1, '−'), (7, '~'), (8, '~')].map(|(at, c)| row[at].starts_with(c));
         assert_eq!(are_first, [true; 3], "{row:?}");
     }

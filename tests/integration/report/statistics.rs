@@ -50,8 +50,9 @@ fn slopes_and_standard_errors_match_values_computed_by_hand() {
 }
 
 /// Each row has the errors at 1, 4, 16, … samples, and after the arrow up to three expected
-/// numbers: the slope at the end; the factor by which the error falls with four times the samples;
-/// and the factor by which the samples must grow for a tenth of the error.
+/// numbers. The first is the slope of the logarithm of the error. The second is the factor by which
+/// the error falls if the number of samples is multiplied by 4. The third is the factor by which
+/// the number of samples must be multiplied for a tenth of the error.
 #[test]
 fn the_slope_is_that_of_the_last_three_points_and_says_what_it_means() {
     for [errors, expected] in rows(
@@ -115,8 +116,8 @@ fn numbers(text: &str) -> Vec<f64> {
 }
 
 /// Each row has measured points: samples, CPU time and error. After the arrow follow an error and
-/// the expected cost of reaching it: the samples, the CPU time, and 1 if these are extrapolated or
-/// 0 if not. No cost is given if it cannot be estimated.
+/// the expected cost of reaching it: the number of samples, the CPU time, and 1 if these are
+/// extrapolated or 0 if not. If the cost cannot be estimated, only the error follows.
 #[test]
 fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
     for [points, expected] in rows("
@@ -154,8 +155,8 @@ fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
         assert!((found.wall - found.cpu / 2.0).abs() < 1e-9, "{found:?}");
         assert_eq!(found.cpu_runs, [found.cpu; 2]);
     }
-    // If the error rises again with more samples, an earlier low error does not count. The grid of
-    // the samples may have agreed with the picture by chance.
+    // The errors at 1 and 4 samples are low enough, but may be low by chance, because the error at
+    // 16 samples is higher again. So the estimate must lie between 16 and 64 samples.
     let wave = [1.0, 4.0, 16.0, 64.0].map(|n| [n, n, if n == 16.0 { 0.2 } else { 0.05 }]);
     let found = estimate(&wave, 0.1).unwrap();
     let samples = found.per_pixel.unwrap();
@@ -208,8 +209,9 @@ fn progress_reaches_1_when_a_sample_count_is_requested_twice() {
     let control = Control::default();
     let measured = measure(&subject(), &read(SCENE), &request, &control, &tell).unwrap();
     assert!(measured.exact.is_none());
-    // The first run measures the numbers of samples in ascending order, the second run in a
-    // different order.
+    // Each of the two runs measures 1 and 4 samples per pixel, the first run in this order. So the
+    // progress is 1/10 after the first measurement, and 5/10 after the second. The second run may
+    // measure in another order.
     let told = told.into_inner();
     assert_eq!((told.len(), &told[..2]), (4, &[0.1, 0.5][..]));
     assert!(told[2] > 0.5 && told[3] == 1.0, "{told:?}");

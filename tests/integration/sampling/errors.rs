@@ -42,12 +42,15 @@ fn mean_and_error(numbers: Vec<f64>) -> (f64, f64) {
 }
 
 /// Edge of a half-plane in a pixel, given by its normal, its distance from the pixel's centre, and
-/// the area of the pixel on its inner side. Random edges are not parallel to the cells (strata) in
-/// which methods place points. Errors at parallel edges would not tell the methods apart.
+/// the area of the part of the pixel that is in the half-plane.
+///
+/// Random edges are not parallel to the cells (strata) in which methods place points. Errors at
+/// parallel edges would not tell the methods apart.
 type Edge = (DVec2, f64, f64);
 
-/// Returns the error at each edge: the fraction of points on the edge's inner side, minus the area
-/// on this side. For each edge, the points of another pixel are used.
+/// Returns the error at each edge: the fraction of the points in its half-plane, minus the area of
+/// the half-plane's part of the pixel. The errors are independent, because each edge is tested with
+/// the points of a different pixel.
 fn errors(method: Method, n: u64, edges: &[Edge]) -> Vec<f64> {
     let sampling = sampling(method, n, n);
     let error = |(i, &(normal, distance, area)): (u32, &Edge)| {
@@ -70,9 +73,11 @@ fn excess(errors: Vec<f64>, expected: impl Iterator<Item = f64>) -> (f64, f64) {
     )
 }
 
-/// Returns the area of the part of the pixel whose points p satisfy normal · p < distance. From
-/// each quadrant whose tip is a corner of the pixel, the edge cuts off an area. The result is the
-/// sum of these four areas with alternating signs.
+/// Returns the area of the part of the pixel whose points p satisfy normal · p < distance.
+///
+/// The pixel is a combination of four infinite quadrants, one at each corner: two are added and two
+/// are subtracted. The edge cuts a triangle off each quadrant, and the result is the sum of the
+/// triangles' areas with the same signs.
 fn area(normal: DVec2, distance: f64) -> f64 {
     let DVec2 { x, y } = normal.abs();
     let triangle = |height: f64| height.max(0.0) * height.max(0.0) / (2.0 * x * y);
@@ -97,14 +102,14 @@ fn edges() -> Vec<Edge> {
 /// logarithms are equidistant and every method has full grids.
 const COUNTS: [u64; 5] = [16, 64, 256, 1024, 4096];
 
-/// Some of `n` independent points lie on the inner side of an edge. Returns the variance of their
-/// fraction.
+/// Returns the variance of the fraction of points in an edge's half-plane, for `n` independent
+/// points.
 fn variance_of_independent_points(n: u64, (_, _, area): Edge) -> f64 {
     area * (1.0 - area) / n as f64
 }
 
-/// Returns the variance of the fraction of points on the inner side of an edge, if each of `n`
-/// square cells contains one point. Only cells that the edge crosses contribute.
+/// Returns the variance of the fraction of points in an edge's half-plane, if each of `n` square
+/// cells contains one point. Only cells that the edge crosses contribute.
 fn variance_of_one_point_per_cell(n: u64, (normal, distance, _): Edge) -> f64 {
     let side = n.isqrt();
     let middle = |i: u64| (i as f64 + 0.5) / side as f64 - 0.5;
@@ -132,8 +137,9 @@ fn squared_errors_match_theory() {
             variance_of_one_point_per_cell(n, edge)
         });
         assert!(off.abs() < 4.0, "{n}: {off}");
-        // With n points of a Latin hypercube, the variance is at most that of n − 1 independent
-        // points (Owen 1997, "Monte Carlo variance of scrambled net quadrature").
+        // The variance of the fraction is at most as large with n points of a Latin hypercube as
+        // with n − 1 independent points (Owen 1997, "Monte Carlo variance of scrambled net
+        // quadrature"). So `off` may be negative.
         let off = beyond(Method::NRooks, &|edge| {
             variance_of_independent_points(n - 1, edge)
         });
@@ -152,9 +158,10 @@ fn stratified_errors_fall_with_a_slope_of_minus_three_quarters() {
         Method::Halton,
         Method::Sobol,
     ] {
-        // The loop computes the slope of the least-squares line through the logarithms of the
-        // errors at the five counts, and the standard error of the slope. The logarithms of the
-        // counts are equidistant.
+        // The loop fits a line through the logarithms of the errors at the five elements of
+        // `COUNTS` by least squares. It computes the slope of the line and the standard error of
+        // the slope. The weights are constant, because the logarithms of the counts are
+        // equidistant.
         let (mut slope, mut variance) = (0.0, 0.0);
         for (weight, n) in [-0.2, -0.1, 0.0, 0.1, 0.2].into_iter().zip(COUNTS) {
             let nothing = std::iter::repeat(0.0);

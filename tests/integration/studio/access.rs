@@ -269,8 +269,8 @@ fn a_client_without_the_token_is_disconnected_after_five_seconds() {
                 let time = begun.elapsed();
                 let start = String::from_utf8_lossy(start);
                 assert!(time < Duration::from_secs(8), "{start}: {time:?}");
-                // A client is disconnected at once if it has closed its side or has sent something
-                // that is not a token.
+                // A client is disconnected at once, rather than after five seconds, if it has
+                // closed its side or has sent something that is not a token.
                 assert!(
                     is_early || time > Duration::from_secs(4),
                     "{start}: {time:?}"
@@ -292,8 +292,8 @@ fn idle_connections_without_the_token_do_not_block_pages() {
         assert_page_works(&studio);
         drop((idle, sockets));
     }
-    // Pages with the token continue to work, even if they are more numerous than the clients
-    // without a token that the host allows.
+    // The host allows at most 64 clients without the token. Pages have the token, so 80 of them
+    // continue to work.
     let mut pages: Vec<_> = (0..80).map(|_| studio.page().0).collect();
     for page in pages.iter_mut().chain([&mut before]) {
         page.open(json!({}), SMALLEST);

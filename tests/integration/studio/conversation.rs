@@ -128,7 +128,8 @@ fn pages_are_independent_and_do_not_block_each_other() {
     let (_folder, studio) = studio();
     let (mut first, _) = studio.page();
     let (mut second, _) = studio.page();
-    // The picture takes more than a minute to render.
+    // The picture takes more than a minute to render. A second picture for this page is refused
+    // meanwhile.
     let long = first.request("studio/png", json!({ "text": long_pixel() }));
     let refused = first.respond("studio/png", json!({ "text": SCENE }));
     assert_eq!(refused["error"]["message"], "another picture is being made");
@@ -136,7 +137,7 @@ fn pages_are_independent_and_do_not_block_each_other() {
     assert_ne!(open(&mut first, &wrong), json!([]));
     assert_eq!(open(&mut second, SCENE), json!([]));
     second.ask("studio/png", json!({ "text": SCENE }));
-    // The host does not wait for a cancelled picture.
+    // A cancelled picture ends at once, so the host is ready for the next one.
     first.notify("$/cancelRequest", json!({ "id": long + 100 }));
     first.notify("$/cancelRequest", json!({ "id": long }));
     assert_eq!(first.response(long)["error"]["code"], -32800);
@@ -151,7 +152,8 @@ fn closing_a_page_cancels_its_work() {
 
     let (_folder, studio) = studio();
     let tasks = format!("/proc/{}/task", studio.child.id());
-    // A thread that renders has the same name as the thread that has started it.
+    // Waits until a thread called `name` runs, or until none does. Rendering threads are included:
+    // each has the name of the thread that has started it.
     let wait = |name: &str, is_there: bool| {
         for _ in 0..500 {
             let tasks = fs::read_dir(&tasks)

@@ -58,7 +58,8 @@ fn a_save_never_overwrites_a_change_of_another_program() {
     let (folder, studio) = studio();
     let (mut page, _) = studio.page();
     folder.write("a.scn", "// theirs");
-    // Saving notices the change even before the host has told the page about it.
+    // The host notices the other program's change when the page saves, even before it has told the
+    // page about the change.
     let theirs = json!({ "ok": false, "text": "// theirs" });
     assert_eq!(save(&mut page, "// mine", Some(SCENE))["result"], theirs);
     assert_eq!(folder.text("a.scn"), "// theirs");
@@ -332,8 +333,10 @@ fn a_browser_opens_with_a_single_use_token_unless_no_open_is_given() {
             assert_eq!(studio.admitted(token).err(), Some(twice));
         }
         assert_eq!([first.closed(), again.closed()], [twice; 2]);
-        // The session also ends for a page that does not read its messages.
-        thread::sleep(Duration::from_secs(1));
+        // The session also ends for a page that does not read its messages. The host gives up a
+        // write to such a page only after 10 seconds, but the session must end long before. Four
+        // seconds suffice even on a busy machine.
+        thread::sleep(Duration::from_secs(4));
         let mut rest = Vec::new();
         let _ = silent.get_mut().read_to_end(&mut rest);
         assert!(rest.len() < long.len(), "{} bytes", rest.len());
@@ -366,7 +369,7 @@ fn a_signal_ends_studio_within_a_second_and_closes_its_pages() {
             // another program to write to it.
             fs::remove_file(folder.path("a.scn")).unwrap();
             folder.make_pipe("a.scn");
-            // In this time, the host checks the file at least once.
+            // The host checks the file regularly. It does so at least once in 2.5 seconds.
             thread::sleep(Duration::from_millis(2500));
         }
         let begun = Instant::now();

@@ -1,6 +1,6 @@
-//! The sum over the lines that an edge crosses, by Fourier modes, for an edge along which the depth
-//! less than doubles. Green's theorem turns a board's integral into such sums
-//! ([`green`](super::super::green)).
+//! Sums over the lines that an edge crosses, if the depth less than doubles along the edge. Each
+//! sum is computed as a sum of Fourier modes. Green's theorem turns a board's integral into such
+//! sums ([`green`](super::super::green)).
 
 use std::f64::consts::PI;
 
@@ -11,15 +11,14 @@ use super::super::special::{Complex, cis, reduced_multiple, square, times};
 use super::{LATER_TERMS_SHARE, MODE_TERMS, amplitudes, last_mode, lerch::lerch, mode};
 use crate::math::{Double, Real};
 
-/// Minimum truncation error that is allowed for the sum over an edge along which the depth less
-/// than doubles, as a fraction of the pixel's tolerance. The edge's own limit,
-/// [`LATER_TERMS_SHARE`] of its tolerance, is used if it is larger. A thousandth hardly adds to the
-/// pixel's error.
+/// Limit of the truncation error of the sum over an edge along which the depth less than doubles,
+/// as a fraction of the pixel's tolerance. The limit [`LATER_TERMS_SHARE`] of the edge's own
+/// tolerance is used instead if it is larger. A thousandth hardly adds to the pixel's error.
 const LEVEL_TRUNCATION: f64 = 1e-3;
 /// Minimum ratio of the depth in the middle of an edge to the change of the depth along the edge,
-/// at which the depth counts as constant. Treating it as constant adds at most 4/STEADY, about
-/// 1e-6, of the sum of the absolute terms to the error bound. Measured: with 7.5e5 or 1.2e7, no
-/// bound changes.
+/// at which the depth is treated as constant. This approximation adds at most 4/STEADY, about 1e-6,
+/// of the sum of the absolute terms to the error bound. Measured: with 7.5e5 or 1.2e7, no bound
+/// changes.
 const STEADY: f64 = 3e6;
 
 /// Computes the alternating sum Σ (−1)^j·X over the crossings j of an edge along which the depth
@@ -85,9 +84,9 @@ pub(super) fn sum(
     let later: f64 = (MODE_TERMS + 1..=series.terms)
         .map(|k| lines * series.size(k, all.depth))
         .sum();
-    // If the depth m counts as constant, m^−s with the exponent s of a term differs from its value
-    // in the middle by at most s·gN/2m of this value. N is the number of crossings, and g the step
-    // of m between them. Otherwise, each of the two Lerch series has an error of about 500
+    // If the depth m is treated as constant, m^−s with the exponent s of a term differs from its
+    // value in the middle by at most s·gN/2m of this value. N is the number of crossings, and g the
+    // step of m between them. Otherwise, each of the two Lerch series has an error of about 500
     // roundings of w/2 times its first term, and a truncation error of at most 0.04·s·(s + 1)/w² of
     // its first term.
     let model = if is_steady {

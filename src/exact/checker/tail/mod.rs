@@ -48,8 +48,8 @@ use super::special::Complex;
 use crate::math::{Double, Real};
 
 /// Number of terms of an edge's series ([`EdgeSeries`]), counted from the first, whose sums over
-/// the edge's crossings are computed by Fourier modes. The later terms count as an error, which
-/// falls with a higher power of the depth. Along an edge that recedes from the eye, the first
+/// the edge's crossings are computed by Fourier modes. The error bound includes the later terms,
+/// which fall with a higher power of the depth. Along an edge that recedes from the eye, the first
 /// crossings are added one by one, with all terms, until this error is small enough.
 const MODE_TERMS: usize = 3;
 
@@ -58,16 +58,16 @@ const MODE_TERMS: usize = 3;
 /// or 80,000, the measured running time changes by less than 10 %.
 const MAX_DIRECT: f64 = 20_000.0;
 /// Maximum number of an edge's crossings that are added one by one, and maximum number n of a
-/// Fourier mode. The crossings or modes beyond count as an error. Adding 300,000 of them takes a
-/// few milliseconds.
+/// Fourier mode. A bound of the remaining crossings or modes is added to the error. Adding 300,000
+/// crossings or modes takes a few milliseconds.
 const MAX_TERMS_ADDED: f64 = 300_000.0;
-/// Fraction of an edge's tolerance up to which the edge's whole sum is left out: if an upper bound
-/// of the sum is at most this fraction, the bound counts as an error instead. Skipped Fourier modes
-/// may use up the same fraction. The fractions of all kinds of errors must add up to less than 1.
+/// Fraction of an edge's tolerance that the edge's whole sum must not exceed to be left out. The
+/// sum is then taken as 0, and its upper bound is added to the error. Skipped Fourier modes may use
+/// up the same fraction. The fractions of all kinds of errors must add up to less than 1.
 const SKIPPED_SHARE: f64 = 0.25;
-/// Fraction of an edge's tolerance for the error of leaving out those terms of its series
-/// ([`EdgeSeries`]) that are not summed by Fourier modes. Not critical: with 0.0125 or 0.2, the
-/// measured running time changes by less than 10 %.
+/// Fraction of an edge's tolerance that may be used up by leaving out terms of the edge's series
+/// ([`EdgeSeries`]): those that are not summed by Fourier modes. Not critical: with 0.0125 or 0.2,
+/// the measured running time changes by less than 10 %.
 const LATER_TERMS_SHARE: f64 = 0.05;
 /// Approximate time to add one crossing directly, in units of about 50 ns. It is charged to the
 /// pixel's budget, and need not be precise, because the budget only stops computations that take
@@ -141,8 +141,9 @@ pub(super) fn sum(
 }
 
 /// Returns the amplitudes of the first three terms of the series ([`EdgeSeries`]) in the Fourier
-/// mode n = 1. The amplitude of a term is its factor in `series.factors` times a unit. The unit of
-/// the first term is `first`; `next` computes the unit of each later term from the previous unit.
+/// mode n = 1. The amplitude of a term is its factor in `series.factors` times a scale. The scale
+/// of the first term is `first`; `next` computes the scale of each later term from the previous
+/// scale.
 fn amplitudes(series: &EdgeSeries, first: f64, next: impl Fn(f64) -> f64) -> [f64; MODE_TERMS] {
     let (mut amplitudes, mut unit) = ([0.0; MODE_TERMS], first);
     for (amplitude, factor) in amplitudes.iter_mut().zip(&series.factors[1..=series.terms]) {
@@ -173,8 +174,8 @@ fn last_mode(size: f64, limit: f64, trivial: f64, budget: &PixelBudget) -> Optio
 fn mode(n: f64, amplitudes: &[f64; MODE_TERMS], sums: [Complex; MODE_TERMS]) -> f64 {
     let per_mode = 1.0 / n;
     let cube = per_mode * per_mode * per_mode;
-    // Only the imaginary parts of the products count. The sums are multiplied by i^−2, i^−3 and
-    // i^−4, which are −1, i and 1.
+    // Only the imaginary parts of the products are needed. The sums are multiplied by i^−2, i^−3
+    // and i^−4, which are −1, i and 1.
     let [first, second, third] = [-sums[0][1], sums[1][0], sums[2][1]];
     let [a, b, c] = amplitudes;
     cube * (a * first + per_mode * (b * second + per_mode * c * third))

@@ -1,5 +1,5 @@
-//! The sum over the lines that an edge crosses, by Fourier modes, for an edge along which the depth
-//! at least doubles. Green's theorem turns a board's integral into such sums
+//! Sums over the lines that an edge crosses, if the depth at least doubles along the edge. Each sum
+//! is computed as a sum of Fourier modes. Green's theorem turns a board's integral into such sums
 //! ([`green`](super::super::green)). The sum starts at a depth from which the expansion of the
 //! Lerch series is accurate.
 
@@ -21,13 +21,13 @@ const MODE_COST: f64 = 4.0;
 /// small. Measured: with 7, a picture of a horizon takes up to 20 % longer; with 123, it is not
 /// faster.
 const FIRST_MODES: f64 = 31.0;
-/// Fraction of an edge's tolerance for the error of leaving out all Fourier modes beyond the last
-/// computed one. The tolerance is divided among several kinds of errors. This kind gets the largest
-/// fraction, because a smaller one would need more modes.
+/// Fraction of an edge's tolerance that may be used up by leaving out all Fourier modes beyond the
+/// last computed one. The tolerance is divided among several kinds of errors. This kind gets the
+/// largest fraction, because a smaller one would need more modes.
 const BEYOND_LAST_SHARE: f64 = 0.6;
-/// Fraction of an edge's tolerance for the truncation error of the Lerch series ([`lerch`]) in the
-/// first term of the edge's series ([`EdgeSeries`]). Not critical: with 0.005 or 0.08, the measured
-/// running time changes by less than 10 %.
+/// Fraction of an edge's tolerance that may be used up by truncating the Lerch series ([`lerch`])
+/// in the first term of the edge's series ([`EdgeSeries`]). Not critical: with 0.005 or 0.08, the
+/// measured running time changes by less than 10 %.
 const LERCH_SHARE: f64 = 0.02;
 /// Minimum of w, the depth divided by its step from crossing to crossing, at which the Lerch series
 /// of exponents s = 3 to 5 ([`lerch`]) is expanded in 1/w. Each term of the expansion is then at
@@ -52,7 +52,7 @@ pub(super) fn start(all: &LineCrossings, series: &EdgeSeries, tolerance: f64) ->
         (factor * 4.0 / (PI * PI * PI) / (2.0 * g) / (4.0 * BEYOND_LAST_SHARE * tolerance)).sqrt();
     let cheapest = (0.5 * MODE_COST * kappa * g).sqrt();
     // From the depth `nothing` on, the remaining sum is negligible. The first term of the series X
-    // is at most ½/π of its factor.
+    // is at most its factor times ½/π.
     let nothing = (factor * 0.25 / PI / g / (0.5 * SKIPPED_SHARE * tolerance)).sqrt() + g;
     // `steep` and `fourth` are depths at which two errors reach their limits. The truncation error
     // of a mode falls as w^−5, and the sum of the terms of the series X from the fourth term on as
@@ -86,8 +86,8 @@ pub(super) fn sum_from(
         return BoundedSum::zero_within(trivial);
     }
     let w = depth / g;
-    // A term of the series falls with the depth as w^(−2−k). The amplitudes do not contain this
-    // factor, because the sums over crossings have it.
+    // Term k of the series falls with the depth as w^(−2−k). The amplitudes do not contain this
+    // factor, because the sums over crossings contain it.
     let amplitudes = amplitudes(series, 4.0 / (PI * PI * PI) / (g * g * g), |a| a / (PI * g));
     let [first, second, third] = amplitudes.map(f64::abs);
     let u = 1.0 / w;

@@ -1,4 +1,4 @@
-//! Compares sums over crossings, and their bounds, with sums of all terms.
+//! Compares sums over crossings, and their error bounds, with sums that are added term by term.
 
 use std::cell::RefCell;
 
@@ -23,7 +23,8 @@ struct Edge {
 }
 
 impl Edge {
-    /// Adds up `lines` crossings, each at its own place in double-double.
+    /// Adds up the terms of the first `lines` crossings one by one. The coordinate of each crossing
+    /// is computed in double-double.
     fn sum_of(&self, lines: f64) -> f64 {
         let (mut sum, mut rest, mut j) = (0.0, 0.0, 0.0);
         while j < lines {
@@ -36,8 +37,8 @@ impl Edge {
         sum + rest
     }
 
-    /// Returns an upper bound of the sum of absolute terms from the crossing `from` on, if there is
-    /// no end.
+    /// Returns an upper bound of the sum of the terms' absolute values from the crossing `from` on,
+    /// for an edge with infinitely many crossings.
     fn most_beyond(&self, from: f64) -> f64 {
         let depth = self.all.depth + (from - 1.0) * self.all.rise;
         (1..=self.series.terms)
@@ -47,7 +48,7 @@ impl Edge {
 }
 
 /// Edges of any direction: `lines` crossings, along which the depth grows by the factor `growth`.
-/// Their sum is at most `size`.
+/// The sum of the terms' absolute values over an edge's crossings is at most about `size`.
 fn edges(
     lines: impl Strategy<Value = f64>,
     growth: impl Strategy<Value = f64>,
@@ -66,7 +67,8 @@ fn edges(
         prop::array::uniform2(-1.0..1.0_f64),
     )
         .prop_map(move |(lines, growth, stride, t, [climb, slope])| {
-            // The depth is at least 18 times the slopes, as that of far squares.
+            // The depth is at least 18 times the slopes. Only at such depths, beyond
+            // `NEAR_SQUARES`, is the series used.
             let depth = 18.0;
             let rise = if lines.is_finite() {
                 depth * growth / lines

@@ -1,4 +1,5 @@
-//! Compares the integrals of boards, and their bounds, with sums over squares in hundreds of bits.
+//! Compares the integrals of boards, and their error bounds, with sums over squares that are
+//! computed with hundreds of bits of precision.
 
 use std::cell::RefCell;
 
@@ -13,7 +14,7 @@ use crate::reference::{
     tightness::Tightness,
 };
 
-/// The ways in which [`Homography::over`] computes an integral.
+/// Errors found, by the way in which [`Homography::over`] computes the integral.
 #[derive(Default)]
 struct Found {
     few: Tightness,
@@ -22,8 +23,8 @@ struct Found {
     far: Tightness,
 }
 
-/// Returns the board of which `board` may be the rounded one, with roundings of the forms' factors
-/// that increase the integral over the pixel as much as possible.
+/// Returns a board whose forms become those of `board` if they are rounded. The roundings of the
+/// forms' factors are chosen to increase the integral over the pixel as much as possible.
 fn worst(board: &Homography) -> ExactBoard {
     let [a, b] = board.across;
     let forms = [a, b, board.below];
@@ -103,7 +104,8 @@ fn errors_of_boards_are_within_tight_bounds() {
             } else {
                 &mut found.mixed
             };
-            // The errors of lines on the two sides of a square have opposite signs.
+            // The errors of the lines on the two sides of a square have opposite signs. A typical
+            // error is therefore smaller than the bound, by the root of the number of lines.
             let error = error.to_f64().value().abs();
             by.add(error, sum.bound, worst.lines(&PIXEL), &board);
             Ok(())

@@ -1,5 +1,5 @@
-//! Compares the integrals of boards over segments, and their bounds, with sums over squares in
-//! hundreds of bits.
+//! Compares the integrals of boards over segments, and their error bounds, with sums over squares
+//! that are computed with hundreds of bits of precision.
 
 use std::cell::RefCell;
 
@@ -18,7 +18,7 @@ use crate::{
     },
 };
 
-/// An arc in hundreds of bits.
+/// An arc of a conic, with coordinates of hundreds of bits of precision.
 struct ExactArc {
     points: [Point; 3],
     weight: N,
@@ -53,8 +53,9 @@ impl ExactArc {
         }
     }
 
-    /// Returns the area between the arc and its chord. The parallel to the chord that touches the
-    /// arc divides it into two arcs of equal weight, which is nearer to 1.
+    /// Returns the area between the arc and its chord. The arc, and then each of its parts, is
+    /// halved 60 times, at the point where the tangent is parallel to the chord. Each halving
+    /// brings the weight nearer to 1, that of a parabola.
     fn area(&self) -> N {
         let (mut share, mut scale, mut weight) =
             (NUMBER.exact(0.0), NUMBER.exact(1.0), self.weight.clone());
@@ -65,7 +66,7 @@ impl ExactArc {
             scale /= &more;
             weight = (more / NUMBER.exact(2.0)).sqrt();
         }
-        // The rest are parabolas.
+        // The remaining arcs are parabolas, whose segments are 2/3 of their triangles.
         area(&self.points) * (share + scale * NUMBER.exact(2.0) / NUMBER.exact(3.0))
     }
 

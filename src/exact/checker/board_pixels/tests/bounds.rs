@@ -1,4 +1,5 @@
-//! Compares the pixels of a batch, and their bounds, with sums over squares in hundreds of bits.
+//! Compares the results of batched pixels, and their error bounds, with sums over squares that are
+//! computed with hundreds of bits of precision.
 
 use std::cell::RefCell;
 
@@ -11,10 +12,10 @@ use crate::reference::{
     tightness::Tightness,
 };
 
-/// Returns the forms of a board at the height `y`, below `eye`, in a pixel.
+/// Returns the linear forms that map a pixel to a board at the height `y`, below `eye`.
 ///
 /// The ray r from the eye e meets the board where x = e_x + (y − e_y)·r_x/r_y, and likewise z.
-/// Every component of r is a linear form.
+/// Every component of r is a linear form of the position in the pixel.
 fn forms(oracle: &Oracle, pixel: &BoardPixel, eye: DVec3, [y, square]: [f64; 2]) -> ExactBoard {
     let number = |x| oracle.number.exact(x);
     let ray = |x, y| oracle.direction(pixel.x, pixel.y, dvec2(x, y));
@@ -64,7 +65,8 @@ fn errors_of_batches_are_within_tight_bounds() {
                     let Some(sum) = sum else { continue };
                     let board = forms(&oracle, &pixel, eye, [0.25, square]);
                     let error = board.integral(&PIXEL) - NUMBER.exact(sum.value);
-                    // Each of the lines that cross the pixel has an error of seven roundings.
+                    // Each of the lines that cross the pixel contributes seven roundings to the
+                    // error.
                     let lines = board.lines(&PIXEL);
                     let mut found = found.borrow_mut();
                     found.add(
