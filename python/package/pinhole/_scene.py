@@ -78,8 +78,7 @@ class Scene:
     @property
     def problems(self) -> Problems:
         """The warnings about the text."""
-        problems: Problems = self._problems
-        return problems
+        return self._problems
 
     def render(self, crop: Crop | None = None, threads: int | None = None) -> NDArray[np.uint8]:
         """Renders the picture, or a part of it, in sRGB.
@@ -101,7 +100,7 @@ class Scene:
     ) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
         """Computes the means of the pixels without samples, in linear light.
 
-        Also returns a bound of each pixel's error: no channel of the mean is further from the truth.
+        Also returns a bound of each pixel's error: how far a channel may be from the truth.
         """
         exact: tuple[NDArray[np.float64], NDArray[np.float32]]
         exact = self._native.render_exact(*self._part(crop, threads))
@@ -127,8 +126,8 @@ class Scene:
                 f"the ending of {path} stands for no format: a picture's file ends in .png or .exr"
             )
         elif not self._native.save_png(path, *part):
-            message = f"the scene has more than 1 MiB of text or 1000 settings, so {path} does not carry it"
-            warnings.warn(message, stacklevel=2)
+            reason = "the scene has more than 1 MiB of text or 1000 settings"
+            warnings.warn(f"{reason}, so {path} does not carry it", stacklevel=2)
 
     def probe(self, x: float, y: float) -> dict[str, Any]:
         """Follows the ray through a point of the picture, in pixels from its top left corner.
@@ -141,7 +140,7 @@ class Scene:
         return answer
 
     def inspect(self) -> dict[str, Any]:
-        """Returns what `pinhole inspect --format json` prints: camera, sampler, objects, and more."""
+        """Returns what `pinhole inspect --format json` prints: camera, objects, and more."""
         answer: dict[str, Any] = json.loads(self._native.inspect())
         return answer
 
