@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import sysconfig
@@ -24,6 +25,9 @@ sphere   Ball { center (-1.6, h, 0)  color olive }
 triangle Sail { centroid (0.2, 1, 0.6)  normal (0.3, 0, 1)  sides (2, 2, 1)  color teal }
 checkerboard  { colors (gray, white) }
 """
+
+# A job in the background ignores Ctrl-C, and so would the processes that the tests start and end.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 Program = Callable[..., "subprocess.CompletedProcess[bytes]"]
 
