@@ -132,6 +132,9 @@ def commands(folder, width, height, counts):
     yield render("figure EXR", FIGURE, out=exr)
     yield render("figure crop", FIGURE, more=["--crop", f"{width // 4},{height // 4},{width // 2},{height // 2}"])
     yield render("figure 1x1", FIGURE, size=(1, 1))
+    # Pictures of several bands: their peak memory must not grow with their height.
+    yield render("poster", FIGURE, "sampler.per_pixel=1", size=(2048, 8192))
+    yield render("poster EXR", FIGURE, "sampler.per_pixel=1", size=(2048, 4096), out=exr)
     for count in counts:
         scene = folder / f"{count}.scn"
         yield render(f"{count} spheres", scene)

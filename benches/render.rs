@@ -74,6 +74,7 @@ fn main() {
         scene: String::new(),
         overrides: Vec::new(),
         crop: None,
+        size: None,
     };
     let whole = Area::whole(WIDTH, HEIGHT);
     let [plain, png, exr] = least([
@@ -82,7 +83,7 @@ fn main() {
         },
         &mut || write_png(&film, Some(&recipe), &mut Vec::new()).expect("a list takes all bytes"),
         &mut || {
-            write_exr(&film, whole, whole, &mut Cursor::new(Vec::new()))
+            write_exr(&film, whole, whole, None, &mut Cursor::new(Vec::new()))
                 .expect("a list takes all bytes");
         },
     ]);

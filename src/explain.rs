@@ -137,7 +137,7 @@ pub fn headings() -> impl Iterator<Item = &'static str> {
 /// Explanation pages about one subject.
 #[derive(Debug)]
 pub struct Group {
-    /// The subject.
+    /// Subject that all pages of the group are about.
     pub name: &'static str,
     /// The pages, in the order in which one would teach them.
     pub pages: &'static [Page],

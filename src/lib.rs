@@ -65,7 +65,8 @@
 //! let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
 //! let left_half = Area::whole(32, 36);
 //! let film = render::render(&world, &sampling, left_half, &render::Control::default())?;
-//! film::write_exr(&film, left_half, Area::whole(64, 36), &mut std::io::Cursor::new(Vec::new()))?;
+//! let mut file = std::io::Cursor::new(Vec::new());
+//! film::write_exr(&film, left_half, Area::whole(64, 36), None, &mut file)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

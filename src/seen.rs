@@ -60,7 +60,7 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
         let integrator = Integrator::for_values(&world, |_| []).with_work_limit(most_work);
         let is_exact = integrator.shares(*tile, |area, shares| {
             for &(object, share) in shares {
-                // A share of at most 1e-9 of the tile may be a rounding error, so it is ignored.
+                // A fraction of at most 1e-9 of `area` may be a rounding error, so it is ignored.
                 if share > 1e-9 && object != world.background() {
                     add(&mut areas, object, (area, area.pixels() as f64 * share));
                 }

@@ -187,8 +187,9 @@ impl Scene {
     ) -> PyResult<()> {
         self.run(py, move |inner, cancel| {
             let film: Film<[f32; 3]> = inner.film(crop, threads, cancel)?;
+            let digest = inner.recipe(crop).digest();
             files::write(&path, Purpose::Named, cancel, |out| {
-                film::write_exr(&film, inner.part(crop), inner.whole(), out)
+                film::write_exr(&film, inner.part(crop), inner.whole(), Some(&digest), out)
             })
             .map_err(|error| not_written(&path, error))
         })
@@ -283,6 +284,7 @@ impl Inner {
             scene: self.sources.file.text().to_owned(),
             overrides: sets.map(|set| set.text().to_owned()).collect(),
             crop: crop.map(|_| self.part(crop)),
+            size: crop.map(|_| [self.whole().width, self.whole().height]),
         }
     }
 

@@ -64,7 +64,6 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         FileBytes::Other(bytes) => (bytes, is_named),
     };
     let cancel = interrupt.watch();
-    let is_strict = args.strict || args.tolerance.is_some();
     if is_picture {
         if !args.overrides.sets.is_empty() {
             let message = format!(
@@ -93,6 +92,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let verdict = reference.judge(&a, jpeg, &comparison, cancel)?;
     let is_equal = comparison.is_equal();
     let is_right = matches!(verdict.kind, Kind::Right | Kind::Noise);
+    let is_strict = args.strict || args.tolerance.is_some();
     let report = DiffReport {
         names: [&args.a, &args.b].map(|path| path.display().to_string()),
         sizes: [[part.width, part.height]; 2],
@@ -126,7 +126,7 @@ fn compare(
         comparison,
         tolerance: steps,
         verdict: None,
-        is_strict: args.strict || args.tolerance.is_some(),
+        is_strict: true,
     };
     report.print(args.format.format)?;
     write_heat_map(args, films, tolerance, is_equal, cancel)?;
@@ -219,6 +219,7 @@ struct DiffReport {
     /// Verdict on picture A: whether it is right and, if not, by which mistakes it became wrong.
     /// `None` if B is not a scene.
     verdict: Option<Verdict>,
+    /// Whether the tolerance alone decides. Of two pictures, there is no verdict that could.
     is_strict: bool,
 }
 

@@ -21,7 +21,17 @@ Examples:
   pinhole render figure.scn -o half.png --set camera.roll=30deg --set Ball.center='(0, 2, 0)'
   pinhole render figure.scn -o eyes.png --crop 600,200,80,40
   pinhole render figure.png -o again.png         renders the scene that the picture carries
+  pinhole render figure.scn -o a.png --shard 1/8 the first of eight parts of the picture
+  pinhole render figure.scn -o 'roll-%03d.png' --sweep camera.roll=0deg..90deg/91 --resume
   generate | pinhole render - -o - | view        from standard input to standard output";
+
+pub const MERGE_EXAMPLES: &str = "\
+Examples:
+  pinhole merge part-*.png -o figure.png
+
+Each part carries its place in the picture, and a digest of its scene, its --set arguments and the version of Pinhole. Parts \
+that overlap, leave a gap, or are of different pictures or formats are refused by name. The order of the parts does not \
+matter, and the whole picture is never in memory.";
 
 pub const CHECK_EXAMPLES: &str = "\
 Examples:

@@ -29,7 +29,7 @@ const SCENE_LIMIT: u64 = 256 << 20;
 /// Number of bytes at the start of a PNG that are read to find the scene in it, 8 MiB. Pinhole
 /// stores at most 1 MiB of text ([`Recipe`]) before the pixels. The other 7 MiB leave room for data
 /// that other programs insert before the pixels.
-const PICTURE_LIMIT: u64 = 8 << 20;
+pub const PICTURE_LIMIT: u64 = 8 << 20;
 
 /// Number of bytes at the start of a file that are searched for a picture, 64 KiB. A program may
 /// print messages before its picture; if they are longer than 64 KiB, the picture is not found.
@@ -161,19 +161,35 @@ impl SceneInput {
         reading.scene.ok_or(Trouble::SceneErrors)
     }
 
+    /// Parses the scene and prints its problems if it has errors.
+    pub fn scene_without_warnings(&self) -> Result<Scene, Trouble> {
+        let reading = scene::read(&self.sources);
+        if reading.scene.is_none() {
+            output::to_people(&self.report(&reading));
+        }
+        reading.scene.ok_or(Trouble::SceneErrors)
+    }
+
     /// Returns the report about the scene's problems as readable text.
     pub fn report(&self, reading: &Reading) -> String {
         Report::new(&self.sources, output::style()).human(&reading.diagnostics)
     }
 
-    /// Returns the scene's text and overrides in the form in which a PNG stores them.
-    pub fn recipe(&self, crop: Option<Area>) -> Recipe {
-        let sets = self.sources.sets.iter();
+    /// Returns what a picture file stores about the scene. `crop` is the part that is rendered;
+    /// `None` if all of the picture with the area `whole` is.
+    pub fn recipe(&self, crop: Option<Area>, whole: Area) -> Recipe {
         Recipe {
             scene: self.sources.file.text().to_owned(),
-            overrides: sets.map(|set| set.text().to_owned()).collect(),
+            overrides: self.overrides(),
             crop,
+            size: crop.map(|_| [whole.width, whole.height]),
         }
+    }
+
+    /// Returns the overrides of the scene's values, i.e. the `--set` arguments.
+    pub fn overrides(&self) -> Vec<String> {
+        let sets = self.sources.sets.iter();
+        sets.map(|set| set.text().to_owned()).collect()
     }
 }
 

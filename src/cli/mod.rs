@@ -12,6 +12,7 @@ mod exact_pictures;
 mod explain;
 mod figure;
 mod fmt;
+mod frames;
 mod grade;
 mod help;
 mod input;
@@ -22,6 +23,7 @@ mod layout_diff;
 #[cfg(feature = "lsp")]
 mod lsp;
 mod manual;
+mod merge;
 mod new;
 mod output;
 mod picture;
@@ -29,6 +31,7 @@ mod probe;
 mod progress;
 mod render;
 mod report;
+mod shard;
 mod sheet;
 mod show;
 mod speed;
@@ -87,6 +90,7 @@ fn command(command: Command, interrupt: &Interrupt) -> Result<Status, Trouble> {
         Command::Diff(args) => diff::run(&args, interrupt),
         Command::Grade(args) => grade::run(&args, interrupt),
         Command::Report(args) => report::run(&args, interrupt),
+        Command::Merge(args) => merge::run(&args, interrupt),
         Command::Sheet(args) => sheet::run(&args, interrupt),
         Command::Figure(args) => figure::run(&args, interrupt),
         Command::Explain(args) => explain::run(&args),

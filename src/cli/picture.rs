@@ -13,86 +13,36 @@ use super::{
 };
 use crate::{
     area::Area,
-    files::{self, Purpose},
-    film::{self, LinearFilm, Recipe},
+    files::{self, Purpose, Sink},
+    film::{self, Film, Recipe},
     numbers,
-    render::{Exact, RenderError, Rendered, render_as_asked},
+    render::{Control, Exact, RenderError, Rendered, render_as_asked},
     sampling::Sampling,
     scene::Scene,
     tracer::World,
 };
 
-/// A rendered picture. Its pixels have the precision that the output needs.
-pub enum RenderedPicture {
-    /// Means of pixels in linear light, as 64-bit floats.
-    Light(Rendered),
-    /// Means of pixels in linear light, rounded to 32-bit floats, as an EXR file stores them.
-    Floats(Rendered<[f32; 3]>),
-    /// Pixels rounded to bytes of sRGB, as a PNG file stores them.
-    Bytes(Rendered<[u8; 3]>),
-}
+/// Greatest number of pixels of a picture that are in memory at once. Greater pictures are rendered
+/// and written in bands of rows, so that the size of a poster is limited by the disk. The pixels of
+/// a band take 12 to 50 MB. With smaller bands, threads would wait more often for each other at a
+/// band's end.
+const BAND_PIXELS: u32 = 1 << 22;
 
-impl RenderedPicture {
-    /// Returns the picture as 64-bit floats, or `None` if the pixels were rounded.
-    pub fn into_film(self) -> Option<film::Film> {
-        match self {
-            Self::Light(light) => Some(light.into_film()),
-            Self::Floats(_) | Self::Bytes(_) => None,
-        }
-    }
+/// Number of pixels above which a picture must fit into memory, although it is rendered in bands. It
+/// is that of a poster with sides of 2^18 pixels, which takes hours to render. More pixels are
+/// probably a mistyped size.
+const MISTYPED: u64 = 1 << 36;
 
-    /// Returns a note for the user about the accuracy of an exact picture, i.e. one computed
-    /// without samples. The note is empty for a sampled picture. `part` is the area that was
-    /// rendered.
-    pub fn notes(&self, part: Area, output: &PictureOutput) -> String {
-        match self {
-            Self::Light(Rendered::Sampled(_))
-            | Self::Floats(Rendered::Sampled(_))
-            | Self::Bytes(Rendered::Sampled(_)) => String::new(),
-            Self::Light(Rendered::Exact(exact)) => match output {
-                PictureOutput::File(_, FileFormat::Exr, _) => {
-                    certificate(exact, part, exact.certain, FLOATS)
-                }
-                _ => certificate(
-                    exact,
-                    part,
-                    film::certified(&exact.film, &exact.bounds),
-                    BYTES,
-                ),
-            },
-            Self::Floats(Rendered::Exact(exact)) => certificate(exact, part, exact.certain, FLOATS),
-            Self::Bytes(Rendered::Exact(exact)) => certificate(exact, part, exact.certain, BYTES),
-        }
-    }
-}
-
-/// Precision in which pixels are kept in memory. The lowest precision that the file format allows
-/// is used, since it takes the least memory. If the picture is also shown in the terminal, 64-bit
-/// floats are used.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum KeptPixels {
-    /// Means of pixels in linear light, as 64-bit floats.
-    Light,
-    /// Means of pixels in linear light, rounded to 32-bit floats, as an EXR file stores them.
-    Floats,
-    /// Pixels rounded to bytes of sRGB, as a PNG file stores them.
-    Bytes,
-}
-
-/// Renders the area `part` of a scene's picture. Shows a progress bar if standard error is a
-/// terminal.
-pub fn picture(
-    scene: &Scene,
-    world: &World,
-    part: Area,
-    keep: KeptPixels,
-    cancel: &AtomicBool,
-) -> Result<RenderedPicture, RenderError> {
-    Ok(match keep {
-        KeptPixels::Light => RenderedPicture::Light(render_part(scene, world, part, cancel)?),
-        KeptPixels::Floats => RenderedPicture::Floats(render_part(scene, world, part, cancel)?),
-        KeptPixels::Bytes => RenderedPicture::Bytes(render_part(scene, world, part, cancel)?),
-    })
+/// Returns the bands of rows in which a part of a picture is rendered, from the top.
+fn bands(part: Area) -> impl Iterator<Item = Area> {
+    let rows = (BAND_PIXELS / part.width.max(1)).max(1);
+    (0..part.height)
+        .step_by(rows as usize)
+        .map(move |top| Area {
+            y: part.y + top,
+            height: rows.min(part.height - top),
+            ..part
+        })
 }
 
 /// Renders the area `part` of a scene's picture to pixels of type `P`. Shows a progress bar if
@@ -103,6 +53,19 @@ pub fn render_part<P: film::Pixel>(
     part: Area,
     cancel: &AtomicBool,
 ) -> Result<Rendered<P>, RenderError> {
+    with_progress(scene, part, cancel, |sampling, control| {
+        render_as_asked(world, sampling, part, control)
+    })
+}
+
+/// Runs `work`, which renders the area `part` of a scene's picture. Shows a progress bar if standard
+/// error is a terminal.
+fn with_progress<T>(
+    scene: &Scene,
+    part: Area,
+    cancel: &AtomicBool,
+    work: impl FnOnce(&Sampling, &Control) -> T,
+) -> T {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
     let expected = if sampling.is_exact() {
@@ -113,9 +76,7 @@ pub fn render_part<P: film::Pixel>(
         let share = part.pixels() as f64 / whole.pixels() as f64;
         (sampling.total() as f64 * share) as u64
     };
-    progress::rendering(expected, None, cancel, |control| {
-        render_as_asked(world, &sampling, part, control)
-    })
+    progress::rendering(expected, None, cancel, |control| work(&sampling, control))
 }
 
 /// Error bound of a pixel's mean, in linear light, above which the user gets a note that the pixel
@@ -130,48 +91,70 @@ const BYTES: &str = "the 8-bit rounding";
 /// Phrase for the rounding to 32-bit floats, used in notes to the user about an EXR file.
 const FLOATS: &str = "the 32-bit rounding";
 
-/// Returns a note for the user about the accuracy of an exact picture: the largest error bound of
-/// its pixels' means, and for how many pixels (`certain`) the rounded values are proven right.
-/// `what` is the phrase for the rounding.
-fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what: &str) -> String {
-    let pixels = exact.bounds.len() as u64;
-    let rounding = match pixels - certain {
-        0 => format!("{what} of every pixel is certain"),
-        1 => format!("{what} of all pixels but one is certain"),
-        others => format!(
-            "{what} of all pixels but {} is certain",
-            numbers::grouped(others)
-        ),
-    };
-    let mean = match exact.bound() {
-        // The bound is 0 only if every pixel has a single colour, so nothing was averaged and the
-        // note says that the value is exact.
-        0.0 => "its pixel's only colour".to_owned(),
-        bound => format!("within {} of its true mean", numbers::at_most(bound)),
-    };
-    let mut text = format!("exact: every channel is {mean}; {rounding}\n");
-    let vague = |bound: &&f32| **bound > VAGUE;
-    let count = exact.bounds.iter().filter(vague).count() as u64;
-    if let Some(least) =
-        (0..exact.bounds.len()).max_by(|&a, &b| exact.bounds[a].total_cmp(&exact.bounds[b]))
-        && count > 0
-    {
-        let width = exact.film.width() as usize;
-        // The user is told the column and row in the whole picture, not in the rendered part.
-        let (x, y) = (
-            part.x as usize + least % width,
-            part.y as usize + least / width,
-        );
-        let pixels = match count {
-            1 => "one pixel is".to_owned(),
-            more => format!("{} pixels are", numbers::grouped(more)),
+/// Accuracy of an exact picture, i.e. one computed without samples. It is collected from the
+/// picture's parts.
+#[derive(Default)]
+pub struct Certificate {
+    pixels: u64,
+    /// Number of pixels whose rounded values are proven right.
+    certain: u64,
+    /// Number of pixels whose bound exceeds [`VAGUE`].
+    vague: u64,
+    /// Greatest bound of a pixel's mean, with the pixel's column and row in the whole picture.
+    worst: Option<(f32, [u32; 2])>,
+}
+
+impl Certificate {
+    /// Adds a part of the picture. Parts that were rendered with samples are ignored. `certain` is
+    /// the number of pixels whose rounded values are proven right.
+    fn add<P>(&mut self, rendered: &Rendered<P>, area: Area, certain: impl Fn(&Exact<P>) -> u64) {
+        let Rendered::Exact(exact) = rendered else {
+            return;
         };
-        text += &format!(
-            "exact: {pixels} known less well than to a millionth, least of all the one at column {x}, row {y}: within {}\n",
-            numbers::at_most(exact.bound())
-        );
+        self.pixels += area.pixels();
+        self.certain += certain(exact);
+        for ((x, y), &bound) in area.iter().zip(&exact.bounds) {
+            self.vague += u64::from(bound > VAGUE);
+            if self.worst.is_none_or(|(worst, _)| bound > worst) {
+                self.worst = Some((bound, [x, y]));
+            }
+        }
     }
-    text
+
+    /// Returns a note for the user: the largest error bound of the pixels' means, and for how many
+    /// pixels the rounded values are proven right. `what` is the phrase for the rounding. The note
+    /// is empty if the picture was rendered with samples.
+    fn note(&self, what: &str) -> String {
+        let Some((worst, [x, y])) = self.worst else {
+            return String::new();
+        };
+        let rounding = match self.pixels - self.certain {
+            0 => format!("{what} of every pixel is certain"),
+            1 => format!("{what} of all pixels but one is certain"),
+            others => format!(
+                "{what} of all pixels but {} is certain",
+                numbers::grouped(others)
+            ),
+        };
+        let bound = numbers::at_most(f64::from(worst));
+        let mean = if worst == 0.0 {
+            // The bound is 0 only if every pixel has a single colour, so that nothing is averaged.
+            "its pixel's only colour".to_owned()
+        } else {
+            format!("within {bound} of its true mean")
+        };
+        let mut text = format!("exact: every channel is {mean}; {rounding}\n");
+        if self.vague > 0 {
+            let pixels = match self.vague {
+                1 => "one pixel is".to_owned(),
+                more => format!("{} pixels are", numbers::grouped(more)),
+            };
+            text += &format!(
+                "exact: {pixels} known less well than to a millionth, least of all the one at column {x}, row {y}: within {bound}\n"
+            );
+        }
+        text
+    }
 }
 
 /// Destination and format of a picture.
@@ -247,40 +230,124 @@ impl PictureOutput {
         }
     }
 
-    /// Returns the lowest precision of pixels that suffices for the output.
-    pub fn keep(&self) -> KeptPixels {
+    /// Renders the area `part` of a scene's picture and writes it, band by band. Returns a note for
+    /// the user about the accuracy of an exact picture, which is empty for a sampled one. Shows a
+    /// progress bar if standard error is a terminal. Fails if `cancel` is set.
+    pub fn render(
+        &self,
+        scene: &Scene,
+        world: &World,
+        part: Area,
+        recipe: &Recipe,
+        path_of_scene: &Path,
+        cancel: &AtomicBool,
+    ) -> Result<String, Trouble> {
+        let whole = Area::whole(scene.image.width, scene.image.height);
         match self {
-            Self::File(_, FileFormat::Exr, _) => KeptPixels::Floats,
-            _ => KeptPixels::Bytes,
+            Self::File(_, FileFormat::Exr, _) => {
+                let write = |out: &mut dyn Sink, bands: &mut Bands<[f32; 3]>| {
+                    film::write_exr_bands(part, whole, Some(&recipe.digest()), out, bands)
+                };
+                self.write_bands(scene, world, part, path_of_scene, cancel, write)
+            }
+            _ => {
+                let write = |out: &mut dyn Sink, bands: &mut Bands<[u8; 3]>| {
+                    let size = [part.width, part.height];
+                    film::write_png_bands(size, Some(recipe), out, bands)
+                };
+                self.write_bands(scene, world, part, path_of_scene, cancel, write)
+            }
         }
     }
 
-    /// Writes the picture of a scene. Fails if `cancel` is set. The pixels must have at least the
-    /// precision that [`Self::keep`] returns.
+    fn write_bands<P: film::Pixel>(
+        &self,
+        scene: &Scene,
+        world: &World,
+        part: Area,
+        path_of_scene: &Path,
+        cancel: &AtomicBool,
+        write: impl FnOnce(&mut dyn Sink, &mut Bands<P>) -> io::Result<()>,
+    ) -> Result<String, Trouble> {
+        if part.pixels() > MISTYPED {
+            let reserved = film::reserve_memory(part.width, part.height, size_of::<P>() as u64);
+            reserved.map_err(RenderError::from)?;
+        }
+        let mut certificate = Certificate::default();
+        let mut failed = None;
+        let written = with_progress(scene, part, cancel, |sampling, control| {
+            let mut rendered = bands(part).map(|band| {
+                let rendered = render_as_asked(world, sampling, band, control)?;
+                certificate.add(&rendered, band, |exact| exact.certain);
+                Ok::<_, RenderError>(rendered.into_film())
+            });
+            // The first band is rendered before the file is opened, so that usual pictures leave no
+            // temporary file if this process is killed while it renders.
+            let first = rendered.next();
+            let mut all = first.into_iter().chain(rendered).map(|band| {
+                band.map_err(|error| {
+                    failed = Some(error);
+                    io::Error::from(io::ErrorKind::Other)
+                })
+            });
+            self.write(path_of_scene, cancel, |out| write(out, &mut all))
+        });
+        match (failed, written) {
+            (Some(error), _) => Err(error.into()),
+            (None, written) => written.map(|()| certificate.note(self.rounding())),
+        }
+    }
+
+    /// Writes a picture that was rendered already, with the note about its accuracy. Fails if
+    /// `cancel` is set.
+    pub fn write_rendered(
+        &self,
+        scene: &Path,
+        rendered: &Rendered,
+        recipe: &Recipe,
+        cancel: &AtomicBool,
+    ) -> Result<String, Trouble> {
+        let film = rendered.film();
+        let whole = Area::whole(film.width(), film.height());
+        let mut certificate = Certificate::default();
+        self.write(scene, cancel, |out| match self {
+            Self::File(_, FileFormat::Exr, _) => {
+                certificate.add(rendered, whole, |exact| exact.certain);
+                film::write_exr(film, whole, whole, Some(&recipe.digest()), out)
+            }
+            _ => {
+                let certain = |exact: &Exact| film::certified(&exact.film, &exact.bounds);
+                certificate.add(rendered, whole, certain);
+                film::write_png(film, Some(recipe), out)
+            }
+        })?;
+        Ok(certificate.note(self.rounding()))
+    }
+
+    /// Returns the phrase for the rounding of pixels in the output.
+    fn rounding(&self) -> &'static str {
+        match self {
+            Self::File(_, FileFormat::Exr, _) => FLOATS,
+            _ => BYTES,
+        }
+    }
+
+    /// Writes the content that the function `write` produces. Fails if `cancel` is set.
     pub fn write(
         &self,
         scene: &Path,
-        picture: &RenderedPicture,
-        recipe: &Recipe,
-        whole: Area,
         cancel: &AtomicBool,
+        write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
     ) -> Result<(), Trouble> {
         let written = match self {
             Self::Standard => files::write_stream(output::StandardOutput::new(), cancel, |out| {
-                write_png(picture, recipe, out)
+                write(&mut Unseekable(out))
             }),
-            Self::File(path, format, path_choice) => {
+            Self::File(path, _, path_choice) => {
                 // The path is checked again, since it may have become a link to the scene during
                 // rendering.
                 check_is_not(path, scene)?;
-                files::write(path, path_choice.purpose(path), cancel, |out| {
-                    let linear: LinearFilm = match (format, picture) {
-                        (FileFormat::Exr, RenderedPicture::Light(light)) => light.film().into(),
-                        (FileFormat::Exr, RenderedPicture::Floats(floats)) => floats.film().into(),
-                        _ => return write_png(picture, recipe, out),
-                    };
-                    film::write_exr(linear, recipe.crop.unwrap_or(whole), whole, out)
-                })
+                files::write(path, path_choice.purpose(path), cancel, write)
             }
         };
         written.map_err(|error| trouble(format!("cannot write to {self}: {error}")))
@@ -298,6 +365,28 @@ impl PictureOutput {
     }
 }
 
+/// The pictures of a part's bands, or the error that ended the render.
+type Bands<'a, P> = dyn Iterator<Item = io::Result<Film<P>>> + 'a;
+
+/// A stream as a destination for a format that writes its bytes in order.
+struct Unseekable<'a>(&'a mut dyn io::Write);
+
+impl io::Write for Unseekable<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
+impl io::Seek for Unseekable<'_> {
+    fn seek(&mut self, _: io::SeekFrom) -> io::Result<u64> {
+        Err(io::ErrorKind::NotSeekable.into())
+    }
+}
+
 /// Rejects a picture that would overwrite its scene.
 fn check_is_not(path: &Path, scene: &Path) -> Result<(), Trouble> {
     if input::is_same_file(path, scene) {
@@ -307,19 +396,6 @@ fn check_is_not(path: &Path, scene: &Path) -> Result<(), Trouble> {
         )));
     }
     Ok(())
-}
-
-fn write_png(
-    picture: &RenderedPicture,
-    recipe: &Recipe,
-    out: &mut dyn io::Write,
-) -> io::Result<()> {
-    match picture {
-        RenderedPicture::Light(light) => film::write_png(light.film(), Some(recipe), out),
-        // This cannot occur, since only the output to an EXR file keeps 32-bit floats.
-        RenderedPicture::Floats(_) => Err(io::ErrorKind::InvalidInput.into()),
-        RenderedPicture::Bytes(bytes) => film::write_png(bytes.film(), Some(recipe), out),
-    }
 }
 
 impl std::fmt::Display for PictureOutput {

@@ -1,59 +1,121 @@
-//! `render`: renders a scene to a picture file.
+//! `render`: renders a scene to a picture file, or to a file for each scene of a sweep.
 
 use std::time::Instant;
 
 use super::{
     Status, Trouble,
     args::RenderArgs,
+    frames::{self, FramePattern},
     input::{SceneInput, shown},
     interrupt::Interrupt,
     output,
-    picture::{PictureOutput, picture},
+    picture::PictureOutput,
+    sweep::Sweep,
     trouble,
 };
-use crate::{area::Area, render::RenderError, tracer::World};
+use crate::{area::Area, render::RenderError, scene::Scene, tracer::World};
 
-/// Renders a scene and writes the picture.
+/// Renders a scene and writes the picture, or the pictures of a sweep.
 pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+    if let Some(sweep) = &args.sweep {
+        return render_sweep(args, sweep, interrupt);
+    }
+    if args.shard.is_some() && args.output.is_none() {
+        return Err(trouble(
+            "a shard is one of several files: say with `-o FILE` where it goes",
+        ));
+    }
     let output = PictureOutput::of(&args.scene, args.output.as_deref())?;
     let input = SceneInput::read(&args.scene, &args.overrides)?;
     let scene = input.scene();
-    // The output is checked before rendering, which may take hours. It is checked before the
-    // scene's errors are returned, because an output that cannot be written leads to exit status 2,
-    // which takes precedence over 1, the status of scene errors.
+    // The output is checked before rendering, which may take hours. It is also checked if the scene
+    // has errors: an output that cannot be written leads to exit status 2, which takes precedence.
     output.check(&args.scene)?;
-    let scene = scene?;
-    // A crop on the command line replaces the one stored in the PNG. Both are in pixels of the
-    // whole picture.
-    let crop = args.crop.or(input.crop);
+    render(args, &input, &scene?, &output, interrupt)?;
+    Ok(Status::Done)
+}
+
+/// Renders a scene and writes the picture to `output`.
+fn render(
+    args: &RenderArgs,
+    input: &SceneInput,
+    scene: &Scene,
+    output: &PictureOutput,
+    interrupt: &Interrupt,
+) -> Result<(), Trouble> {
     let whole = Area::whole(scene.image.width, scene.image.height);
+    let crop = crop(args, input, whole)?;
     let part = crop.unwrap_or(whole);
-    if !part.lies_in(whole) {
-        let carried = match args.crop {
-            Some(_) => String::new(),
-            None => format!(", which {} carries,", shown(&args.scene)),
-        };
-        return Err(trouble(format!(
-            "the crop {part}{carried} does not lie within the picture, which has {} × {} pixels",
-            whole.width, whole.height
-        )));
-    }
     let cancel = interrupt.watch();
     let started = Instant::now();
-    let world = World::new_unless(&scene, cancel).map_err(RenderError::from)?;
-    let picture = picture(&scene, &world, part, output.keep(), cancel)?;
-    let recipe = input.recipe(crop);
-    output
-        .write(&args.scene, &picture, &recipe, whole, cancel)
+    let world = World::new_unless(scene, cancel).map_err(RenderError::from)?;
+    let recipe = input.recipe(crop, whole);
+    let note = output
+        .render(scene, &world, part, &recipe, &args.scene, cancel)
         .map_err(|trouble| interrupt.or(trouble))?;
     output::to_people(&output.note_of_length(&recipe));
-    output::to_people(&picture.notes(part, &output));
+    output::to_people(&note);
     if output::is_watched() {
         let [width, height] = [part.width, part.height];
         let seconds = started.elapsed().as_secs_f64();
         output::to_people(&format!(
             "wrote {output}: {width} × {height} pixels in {seconds:.2} s\n"
         ));
+    }
+    Ok(())
+}
+
+/// Returns the part of the picture that is to be rendered; `None` if all of it is.
+fn crop(args: &RenderArgs, input: &SceneInput, whole: Area) -> Result<Option<Area>, Trouble> {
+    if let Some(shard) = args.shard {
+        let band = shard.band(whole).ok_or_else(|| {
+            trouble(format!(
+                "{shard} is not one of at most {} shards: the picture has so many rows",
+                whole.height
+            ))
+        })?;
+        return Ok(Some(band));
+    }
+    // A crop on the command line replaces the one stored in the PNG. Both are in pixels of the
+    // whole picture.
+    let crop = args.crop.or(input.crop);
+    match crop {
+        Some(part) if !part.lies_in(whole) => {
+            let carried = match args.crop {
+                Some(_) => String::new(),
+                None => format!(", which {} carries,", shown(&args.scene)),
+            };
+            Err(trouble(format!(
+                "the crop {part}{carried} does not lie within the picture, which has {} × {} pixels",
+                whole.width, whole.height
+            )))
+        }
+        crop => Ok(crop),
+    }
+}
+
+/// Renders each scene of a sweep to a file of its own.
+fn render_sweep(
+    args: &RenderArgs,
+    sweep: &Sweep,
+    interrupt: &Interrupt,
+) -> Result<Status, Trouble> {
+    let pattern = FramePattern::of(args.output.as_deref())?;
+    let input = SceneInput::read(&args.scene, &args.overrides)?;
+    let outputs = (0..sweep.count()).map(|i| {
+        let output = PictureOutput::of(&args.scene, Some(&pattern.path(i)))?;
+        output.check(&args.scene)?;
+        Ok(output)
+    });
+    let outputs: Vec<PictureOutput> = outputs.collect::<Result<_, Trouble>>()?;
+    for (step, output) in sweep.steps(&input)?.into_iter().zip(outputs) {
+        let input = step.of(&input);
+        let scene = input.scene_without_warnings()?;
+        let whole = Area::whole(scene.image.width, scene.image.height);
+        let recipe = input.recipe(crop(args, &input, whole)?, whole);
+        if !args.resume || !frames::is_rendered(&output, &recipe) {
+            render(args, &input, &scene, &output, interrupt)?;
+        }
     }
     Ok(Status::Done)
 }

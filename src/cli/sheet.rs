@@ -23,8 +23,7 @@ use crate::{
     files::{self, Purpose},
     film::{self, Film},
     render::RenderError,
-    scene::{self, Count, Scene},
-    source::Source,
+    scene::{Count, Scene},
     tracer::World,
 };
 
@@ -104,27 +103,9 @@ fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Vec<(Scene, String)>, Trou
     let Some(sweep) = &args.sweep else {
         return Ok(vec![(input.scene()?, name(path, args))]);
     };
-    let with = |set: String| {
-        let mut sources = input.sources.clone();
-        let name = format!("{}, --sweep", sources.file.name());
-        sources.sets.push(Source::from_text(name, set));
-        SceneInput { sources, ..input }
-    };
-    // In a sweep, warnings are printed only for the first scene, since the other scenes mostly have
-    // the same ones. Errors are printed for every scene.
-    let later = |input: &SceneInput| {
-        let reading = scene::read(&input.sources);
-        if reading.scene.is_none() {
-            output::to_people(&input.report(&reading));
-        }
-        reading.scene.ok_or(Trouble::SceneErrors)
-    };
-    let [first, last] = sweep.ends().map(with);
-    first.scene()?;
-    later(&last)?;
     let mut scenes = Vec::new();
-    for step in sweep.steps(&input.sources)? {
-        let scene = later(&with(step.set))?;
+    for step in sweep.steps(&input)? {
+        let scene = step.of(&input).scene_without_warnings()?;
         let name = match args.scenes.len() {
             1 => step.label,
             _ => format!("{} {}", name(path, args), step.label),

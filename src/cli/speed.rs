@@ -66,7 +66,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
                 check_samples(&scene, &request)?;
                 let subject = MeasuredScene {
                     name: path.display().to_string(),
-                    overrides: input.recipe(None).overrides,
+                    overrides: input.overrides(),
                 };
                 subjects.push((subject, scene));
             }

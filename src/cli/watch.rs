@@ -17,7 +17,7 @@ use super::{
     input::{self, SceneInput, shown},
     interrupt::Interrupt,
     output,
-    picture::{KeptPixels, PictureOutput, RenderedPicture, picture},
+    picture::{PictureOutput, render_part},
     show::Screen,
     trouble,
 };
@@ -25,7 +25,7 @@ use crate::{
     area::Area,
     film::SIGNATURE,
     preview, refine,
-    render::{Control, RenderError},
+    render::{Control, RenderError, Rendered},
     scene::{self, Scene},
     tracer::World,
 };
@@ -126,22 +126,31 @@ fn render_and_write(
     let reading = scene::read_unless(&input.sources, is_stale).map_err(RenderError::from)?;
     screen.print(&input.report(&reading));
     let scene = reading.scene.ok_or(Trouble::SceneErrors)?;
-    let picture = with_sketch(&scene, output.keep(), is_stale, screen)?;
-    let recipe = input.recipe(None);
     let whole = Area::whole(scene.image.width, scene.image.height);
-    let written = output.write(&args.scene, &picture, &recipe, whole, is_stale);
+    let recipe = input.recipe(None, whole);
+    let world = World::new_unless(&scene, is_stale).map_err(RenderError::from)?;
+    let (written, shown) = match screen.side(whole) {
+        None => {
+            let written = output.render(&scene, &world, whole, &recipe, &args.scene, is_stale);
+            (written, None)
+        }
+        Some(side) => {
+            let rendered = with_sketch(&scene, &world, side, is_stale, screen)?;
+            let written = output.write_rendered(&args.scene, &rendered, &recipe, is_stale);
+            (written, Some(rendered.into_film()))
+        }
+    };
     if written.is_err() && is_stale.load(Ordering::SeqCst) {
         return Err(Trouble::Interrupted);
     }
     let done = Instant::now();
-    let notes = picture.notes(whole, output);
     // The picture is shown even if it could not be written.
-    if let Some(film) = picture.into_film() {
+    if let Some(film) = shown {
         screen.draw(film);
     }
-    written?;
+    let note = written?;
     screen.print(&output.note_of_length(&recipe));
-    screen.print(&notes);
+    screen.print(&note);
     Ok(done)
 }
 
@@ -149,40 +158,34 @@ fn render_and_write(
 /// coarse picture first. The value is a guess at when a user gets impatient.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// Renders the scene. If this takes longer than [`PATIENCE`] and pictures are shown in the
-/// terminal, shows coarse pictures meanwhile, which become finer.
+/// Renders the scene. If this takes longer than [`PATIENCE`], shows coarse pictures in the terminal
+/// meanwhile, which become finer. The first one has squares of `side` pixels.
 fn with_sketch(
     scene: &Scene,
-    keep: KeptPixels,
+    world: &World,
+    side: u32,
     is_stale: &AtomicBool,
     screen: &mut Screen,
-) -> Result<RenderedPicture, RenderError> {
+) -> Result<Rendered, RenderError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
-    let world = World::new_unless(scene, is_stale)?;
-    let Some(side) = screen.side(whole) else {
-        return picture(scene, &world, whole, keep, is_stale);
-    };
     thread::scope(|scope| {
         let (done, wait) = mpsc::channel::<()>();
-        scope.spawn({
-            let world = &world;
-            move || {
-                if wait.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
-                    return;
-                }
-                let control = Control {
-                    threads: None,
-                    progress: &|_| {},
-                    cancel: is_stale,
-                };
-                // An error, usually that the render was cancelled, is ignored here, because the
-                // render of the picture itself reports it.
-                let _ = refine::coarse_to_fine(world, whole, side, &control, |sketch| {
-                    screen.draw(sketch.film);
-                });
+        scope.spawn(move || {
+            if wait.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
+                return;
             }
+            let control = Control {
+                threads: None,
+                progress: &|_| {},
+                cancel: is_stale,
+            };
+            // An error, usually that the render was cancelled, is ignored here, because the
+            // render of the picture itself reports it.
+            let _ = refine::coarse_to_fine(world, whole, side, &control, |sketch| {
+                screen.draw(sketch.film);
+            });
         });
-        let picture = picture(scene, &world, whole, KeptPixels::Light, is_stale);
+        let picture = render_part(scene, world, whole, is_stale);
         drop(done);
         picture
     })

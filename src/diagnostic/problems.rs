@@ -14,8 +14,8 @@ use crate::source::Span;
 /// the memory.
 pub const MOST_PROBLEMS: usize = 10_000;
 
-/// Message of the diagnostic that stands for all omitted problems. The summary does not count this
-/// diagnostic as a mistake.
+/// Message of the diagnostic that is added in place of all omitted problems. The summary does not
+/// count this diagnostic as a mistake.
 pub const LEFT_OUT: &str = "there are too many mistakes, and the others are left out";
 
 /// List of at most [`MOST_PROBLEMS`] problems that one stage of reading a scene found.
@@ -59,14 +59,14 @@ impl Problems {
         self.left_out.is_some()
     }
 
-    /// Removes the problems from the index `length` on. If at least one is removed, there is room
-    /// for new problems, which are then added even if others were omitted before.
+    /// Removes the problems from the index `length` on. If at least one is removed, the list is no
+    /// longer full, and further problems are added again.
     pub fn truncate(&mut self, length: usize) {
         self.split_off(length);
     }
 
-    /// Removes and returns the problems from the index `length` on. If at least one is removed,
-    /// there is room for new problems, which are then added even if others were omitted before.
+    /// Removes and returns the problems from the index `length` on. If at least one is removed, the
+    /// list is no longer full, and further problems are added again.
     pub fn split_off(&mut self, length: usize) -> Vec<Diagnostic> {
         if length < self.kept.len() {
             self.left_out = None;

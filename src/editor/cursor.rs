@@ -16,7 +16,7 @@ use crate::{
     },
 };
 
-/// Made-up name that stands for the word at the cursor while the text is parsed. Any name that no
+/// Made-up name that replaces the word at the cursor while the text is parsed. Any name that no
 /// scene uses would do.
 const CURSOR: &str = "__cursor__";
 

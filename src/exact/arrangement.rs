@@ -39,7 +39,8 @@ const MAX_AREA_PER_HEIGHT: f64 = 3.0;
 /// 2, because the larger of |a| and |b| is about 1.
 const ROUNDING: f64 = 8.0 * f64::UNIT;
 
-/// Returns the share of each colour in the sub-pixel of `regions`, which `lines` cut into cells.
+/// Returns the fraction of a sub-pixel's area that shows each colour. The sub-pixel is that of
+/// `regions`, and `lines` cut it into cells.
 pub fn shares(lines: &[BoundaryLine], mut regions: Regions) -> Shares {
     let mut polygons = vec![PIXEL.to_vec()];
     let mut worst = 0.0_f64;

@@ -142,8 +142,10 @@ impl ConicGraph {
         let at = Double::from_f64(x);
         let minus = b.times(&at).plus(e).negated().hi;
         // Of the two equal formulas for y (`ConicGraph`), (−b ± √Δ)/C and g/(−b ∓ √Δ), the one
-        // whose sum does not cancel is used.
-        if minus * side >= 0.0 {
+        // whose sum does not cancel is used. If Δ is 0, neither sum cancels. The first formula is
+        // used then, since at a rounded end of the branch Δ may in truth be slightly negative, and
+        // the second formula would be wrong there.
+        if minus * side >= 0.0 || root == 0.0 {
             (minus + root) / c.hi
         } else {
             let twice = d.plus(d);
@@ -174,7 +176,8 @@ impl ConicGraph {
         };
         let root = if side < 0.0 { root.negated() } else { root };
         let minus = b.times(&at).plus(e).negated();
-        let y = if minus.hi * side >= 0.0 {
+        // As in `y`, the first formula is used if Δ is 0.
+        let y = if minus.hi * side >= 0.0 || root.hi == 0.0 {
             minus.plus(&root).over(c)
         } else {
             quadratic(a, d, f).over(&minus.minus(&root))

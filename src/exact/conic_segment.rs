@@ -1,5 +1,5 @@
 //! The segment of a conic between an arc and its chord: its area, and the integral of a
-//! checkerboard's sign over it.
+//! checkerboard's sign (1 on squares of one colour, −1 on the others) over it.
 //!
 //! In: an arc as a rational quadratic Bézier curve. Out: the segment's area in closed form, and the
 //! integral of the board's sign over the segment. For the integral, the arc is cut wherever it

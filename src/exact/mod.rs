@@ -76,8 +76,8 @@ const DEFAULT_TOLERANCE: f64 = 9e-10;
 const MAX_CURVES: usize = 12;
 /// Number by which the maximum number of curves in a square part of a pixel grows with each
 /// quartering. Curves that still pass through the same small part are unlikely to be separated in
-/// smaller ones, so further quartering hardly helps. Measured on a heap of objects: with 1 instead
-/// of 4, the time is two thirds; with 16, it is four times as long.
+/// smaller ones, so further quartering hardly helps. Measured on a heap of objects, compared with
+/// the time for 4: two thirds of it with 1, and four times as long with 16.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// Maximum number of times per pixel that an already computed part of the pixel is quartered to
 /// reduce its error bound. While the pixel's bound exceeds the tolerance, the part with the largest
@@ -261,9 +261,10 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 
     /// Calls `show` with each area that shows only one object, and with each other pixel, together
-    /// with the objects' shares of the area. The world must be made by [`World::by_object`], so
-    /// that palette indices stand for objects. Above the work limit, the object in a pixel's middle
-    /// gets the whole pixel. Returns whether all errors of shares are at most 1e-6.
+    /// with the fraction of the area that shows each object. The world must be made by
+    /// [`World::by_object`], so that palette indices stand for objects. Above the work limit, the
+    /// object in a pixel's middle gets the whole pixel. Returns whether the errors of all fractions
+    /// are at most 1e-6.
     pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
         let mut is_exact = true;
         let mut curves = Vec::new();
@@ -312,8 +313,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         }
     }
 
-    /// Computes the share of each colour in the pixel (`x`, `y`). The pixel is quartered if too
-    /// many curves pass through it or if its bound exceeds the tolerance.
+    /// Computes the fraction of the pixel (`x`, `y`) that shows each colour. The pixel is quartered
+    /// if too many curves pass through it or if its bound exceeds the tolerance.
     fn pixel_shares(
         &self,
         x: u32,

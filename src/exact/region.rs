@@ -1,10 +1,11 @@
-//! The regions of a sub-pixel, and what is seen in each.
+//! The regions of a sub-pixel (a pixel or a square part of one), and what is seen in each.
 //!
-//! In: regions between boundaries, with a point inside each. Out: the share of each colour in the
-//! sub-pixel, with an error bound. One ray through the point decides which object is seen in the
-//! region; a checkerboard is then integrated by `checker` and `conic_segment`. The error bound is
-//! the sum of three terms: the bounds of the integrals; the areas whose colour the callers report
-//! as doubtful; and the difference between the regions' total area and the sub-pixel's area.
+//! In: regions between boundaries, with a point inside each. Out: the fraction of the sub-pixel's
+//! area that shows each colour, with an error bound. One ray through the point decides which object
+//! is seen in the region; a checkerboard is then integrated by `checker` and `conic_segment`. The
+//! error bound is the sum of three terms: the bounds of the integrals; the areas whose colour the
+//! callers report as doubtful; and the difference between the regions' total area and the
+//! sub-pixel's area.
 
 use std::mem;
 
@@ -33,17 +34,18 @@ const RAY_WORK: f64 = 0.5;
 /// precision ([`Big`]) then decides, and each object takes hundreds of times as long.
 const BIG_RAY_WORK: f64 = 200.0;
 
-/// Shares of the colours in a pixel or sub-pixel.
+/// Fractions of the area of a pixel or sub-pixel that show each colour.
 #[derive(Clone, Debug, Default)]
 pub struct Shares {
-    /// Indices into the world's palette, each with the share of the sub-pixel's area that shows its
-    /// colour. The shares add up to 1 except for rounding.
+    /// Indices into the world's palette, each with the fraction of the sub-pixel's area that shows
+    /// its colour. The fractions add up to 1 except for rounding.
     pub by_slot: Vec<(usize, f64)>,
-    /// Maximum share of the sub-pixel that may have the wrong colour.
+    /// Maximum fraction of the sub-pixel's area that may have the wrong colour.
     pub bound: f64,
 }
 
-/// Sum of the shares of the colours over the regions of a sub-pixel.
+/// Sum, over the regions of a sub-pixel, of the fractions of the sub-pixel's area that show each
+/// colour.
 pub struct Regions<'a> {
     world: &'a World,
     sub_pixel: SubPixel,
@@ -98,8 +100,8 @@ impl<'a> Regions<'a> {
         }
     }
 
-    /// Adds a region, which no boundary may cross, to the share of the colour or colours seen in
-    /// it.
+    /// Adds the area of a region, which no boundary may cross, to that of the colour or colours
+    /// seen in it.
     pub fn add(&mut self, region: &Region) {
         let Some(object) = self.seen(region) else {
             return self.shares.add(self.world.background(), region.area);

@@ -54,7 +54,8 @@ const MAX_STEPS: usize = 60;
 /// unit roundoffs. Products and sums contribute at most another eight.
 const ROUNDING: f64 = 16.0 * f64::UNIT;
 
-/// Returns the share of each colour in the sub-pixel of `regions`, which `curves` cut.
+/// Returns the fraction of a sub-pixel's area that shows each colour. The sub-pixel is that of
+/// `regions`, and `curves` cut it.
 pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     let (mut lines, mut graphs) = (Vec::new(), Vec::new());
     let mut cuts = vec![-0.5, 0.5];
@@ -236,12 +237,10 @@ fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, r
     let (mut inside, mut gap_in) = (middle, gap_middle);
     let mut last = Ordering::Equal;
     // The crossing is searched by the Illinois variant of false position: if the same end of the
-    // interval is kept twice, the value at that end is halved.
+    // interval is kept twice, the value at that end is halved. Since gap_out < 0 ≤ gap_in, the
+    // estimate does not leave the interval; if rounding puts it at an end, halving moves the next.
     for _ in 0..MAX_STEPS {
-        let mut at = inside - gap_in * (inside - out) / (gap_in - gap_out);
-        if !((at > out.min(inside)) && (at < out.max(inside))) {
-            at = 0.5 * (out + inside);
-        }
+        let at = inside - gap_in * (inside - out) / (gap_in - gap_out);
         let gap_at = gap(at);
         if gap_at.abs() <= f64::UNIT || (inside - out).abs() <= f64::UNIT {
             inside = at;

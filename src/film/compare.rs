@@ -107,7 +107,8 @@ impl Comparison {
         self.beyond == 0
     }
 
-    /// Returns the share of pixels, from 0 to 1, that differ by more than the tolerance.
+    /// Returns the fraction of the pictures' pixels, from 0 to 1, that differ by more than the
+    /// tolerance.
     pub fn share(&self) -> f64 {
         self.beyond as f64 / (f64::from(self.width) * f64::from(self.height))
     }

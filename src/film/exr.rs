@@ -3,115 +3,132 @@
 //! The format's display window is the area of the whole picture. Its data window is the part of the
 //! picture that the file contains.
 
-use std::io;
+use std::{borrow::Borrow, io};
 
 use exr::{
+    block::{self, UncompressedBlock, writer::ChunksWriter},
     error::Error,
-    image::{Encoding, Image, SpecificChannels, write::WritableImage},
     math::Vec2,
     meta::{
-        attribute::{Chromaticities, IntegerBounds, LineOrder, Text},
-        header::ImageAttributes,
+        BlockDescription, Headers,
+        attribute::{
+            AttributeValue, ChannelDescription, Chromaticities, LineOrder, SampleType, Text,
+        },
+        header::{Header, ImageAttributes, LayerAttributes},
     },
-    prelude::{Blocks, Compression, LayerAttributes},
+    prelude::Compression,
 };
 
-use super::pixels::Film;
+use super::pixels::{AsFloats, Film};
 use crate::{area::Area, files::Sink};
 
-/// A picture in memory, in linear light, with 64-bit or 32-bit floats.
-#[derive(Clone, Copy, Debug)]
-pub enum LinearFilm<'a> {
-    /// Pixels with 64-bit floats.
-    Means(&'a Film),
-    /// Pixels with 32-bit floats.
-    Floats(&'a Film<[f32; 3]>),
-}
-
-impl<'a> From<&'a Film> for LinearFilm<'a> {
-    fn from(film: &'a Film) -> Self {
-        Self::Means(film)
-    }
-}
-
-impl<'a> From<&'a Film<[f32; 3]>> for LinearFilm<'a> {
-    fn from(film: &'a Film<[f32; 3]>) -> Self {
-        Self::Floats(film)
-    }
-}
-
-impl LinearFilm<'_> {
-    fn width(self) -> u32 {
-        match self {
-            Self::Means(film) => film.width(),
-            Self::Floats(film) => film.width(),
-        }
-    }
-
-    fn height(self) -> u32 {
-        match self {
-            Self::Means(film) => film.height(),
-            Self::Floats(film) => film.height(),
-        }
-    }
-
-    fn pixel(self, x: u32, y: u32) -> [f32; 3] {
-        match self {
-            Self::Means(film) => film.pixel(x, y).map(|mean| mean as f32),
-            Self::Floats(film) => film.pixel(x, y),
-        }
-    }
-}
+/// Name of the attribute with the digest of a picture's recipe ([`Recipe::digest`]).
+///
+/// [`Recipe::digest`]: super::Recipe::digest
+pub(super) const DIGEST: &str = "pinhole:digest";
 
 /// Writes `film` as an OpenEXR file. The film shows the area `part` of a picture with the area
-/// `whole`. Both are equal if the picture was not cropped.
+/// `whole`. Both are equal if the picture was not cropped. `digest` is that of the picture's recipe,
+/// if it is known.
 ///
 /// # Errors
 ///
 /// `out` cannot be written to, or `part` does not have the film's size or does not lie in `whole`.
-pub fn write_exr<'a>(
-    film: impl Into<LinearFilm<'a>>,
+pub fn write_exr<P: AsFloats>(
+    film: &Film<P>,
     part: Area,
     whole: Area,
+    digest: Option<&str>,
     out: &mut dyn Sink,
 ) -> io::Result<()> {
-    write(film.into(), part, whole, out)
+    if film.height() != part.height {
+        return Err(other_size(film, part));
+    }
+    write_exr_bands(part, whole, digest, out, [Ok(film)])
 }
 
-fn write(film: LinearFilm, part: Area, whole: Area, out: &mut dyn Sink) -> io::Result<()> {
-    if [part.width, part.height] != [film.width(), film.height()] || !part.lies_in(whole) {
+/// Writes an OpenEXR file as [`write_exr`] does, from bands of rows, from the top to the bottom. So
+/// the whole picture need not be in memory.
+///
+/// # Errors
+///
+/// `out` cannot be written to, a band is an error, or the bands do not have the size of `part`, or
+/// `part` does not lie in `whole`.
+pub fn write_exr_bands<P: AsFloats, B: Borrow<Film<P>>>(
+    part: Area,
+    whole: Area,
+    digest: Option<&str>,
+    out: &mut dyn Sink,
+    bands: impl IntoIterator<Item = io::Result<B>>,
+) -> io::Result<()> {
+    if !part.lies_in(whole) {
         let message = format!(
-            "a film of {} × {} pixels is not the part {part} of a picture of {} × {}",
-            film.width(),
-            film.height(),
-            whole.width,
-            whole.height
+            "the part {part} does not lie in a picture of {} × {} pixels",
+            whole.width, whole.height
         );
         return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     }
-    let channels = SpecificChannels::rgb(|Vec2(x, y): Vec2<usize>| {
-        // A picture has at most 2^20 columns and rows, so the conversions to `u32` are exact.
-        <(f32, f32, f32)>::from(film.pixel(x as u32, y as u32))
-    });
-    let encoding = Encoding {
-        // Blocks of 16 rows compress better than single rows. Several copies of a block are in
-        // memory at once, which for a very wide picture would need more memory than the film. Very
-        // wide pictures are therefore written in blocks of one row.
-        compression: match film.width() {
-            0..=0x1_0000 => Compression::ZIP16,
-            _ => Compression::ZIP1,
-        },
-        blocks: Blocks::ScanLines,
-        line_order: LineOrder::Increasing,
+    let mut rows = Rows {
+        part,
+        bands: bands.into_iter(),
+        band: None,
+        end: 0,
+        floats: Vec::new(),
+        at: None,
     };
-    let size = (film.width() as usize, film.height() as usize);
-    let mut image = Image::from_encoded_channels(size, encoding, channels);
-    image.layer_data.attributes = LayerAttributes {
+    // The blocks are compressed and written one by one, so that at most one is in memory.
+    block::write(
+        io::BufWriter::new(out),
+        headers(part, whole, digest),
+        true,
+        |meta, chunks| {
+            let channels = &meta.headers[0].channels;
+            let mut chunks = chunks.sequential_blocks_compressor(&meta);
+            for (at, index) in meta.enumerate_ordered_header_block_indices() {
+                let mut failed = Ok(());
+                let block = UncompressedBlock::from_lines(channels, index, |line| {
+                    // Channels are stored in alphabetical order: blue, green, red.
+                    let (y, channel) = (line.location.position.y(), 2 - line.location.channel);
+                    let written = rows
+                        .row(y as u32)
+                        .map_err(Error::Io)
+                        .and_then(|row| line.write_samples(|x| row[x][channel]));
+                    if failed.is_ok() {
+                        failed = written;
+                    }
+                });
+                failed?;
+                chunks.compress_block(at, block)?;
+            }
+            Ok(())
+        },
+    )
+    .map_err(|error| match error {
+        Error::Io(error) => error,
+        other => io::Error::other(other),
+    })
+}
+
+/// Returns the header of an OpenEXR file, as a list of one.
+fn headers(part: Area, whole: Area, digest: Option<&str>) -> Headers {
+    let channel = |name: &str| ChannelDescription::named(name, SampleType::F32);
+    let size = Vec2(part.width as usize, part.height as usize);
+    // Blocks of 16 rows compress better than single rows. Several copies of a block are in memory
+    // at once, which for a very wide picture would need much memory. Very wide pictures are
+    // therefore written in blocks of one row.
+    let compression = match part.width {
+        0..=0x1_0000 => Compression::ZIP16,
+        _ => Compression::ZIP1,
+    };
+    let mut own = LayerAttributes {
         layer_position: Vec2(part.x as i32, part.y as i32),
         software_name: Some(Text::from(concat!("pinhole ", env!("CARGO_PKG_VERSION")))),
         ..LayerAttributes::default()
     };
-    image.attributes = ImageAttributes {
+    let digest =
+        digest.map(|digest| (Text::from(DIGEST), AttributeValue::Text(Text::from(digest))));
+    own.other.extend(digest);
+    let shared = ImageAttributes {
         // These are the colours of sRGB's red, green, blue and white. OpenEXR also assumes them if
         // a file does not name any.
         chromaticities: Some(Chromaticities {
@@ -120,18 +137,71 @@ fn write(film: LinearFilm, part: Area, whole: Area, out: &mut dyn Sink) -> io::R
             blue: Vec2(0.15, 0.06),
             white: Vec2(0.3127, 0.329),
         }),
-        ..ImageAttributes::new(IntegerBounds::from_dimensions((
-            whole.width as usize,
-            whole.height as usize,
-        )))
+        ..ImageAttributes::with_size(Vec2(whole.width as usize, whole.height as usize))
     };
-    // The blocks are written one by one, so that at most one is in memory.
-    image
-        .write()
-        .non_parallel()
-        .to_unbuffered(out)
-        .map_err(|error| match error {
-            Error::Io(error) => error,
-            other => io::Error::other(other),
-        })
+    let header = Header::new(
+        Text::default(),
+        size,
+        ["B", "G", "R"].map(channel)[..].into(),
+    )
+    .with_encoding(
+        compression,
+        BlockDescription::ScanLines,
+        LineOrder::Increasing,
+    )
+    .with_attributes(own)
+    .with_shared_attributes(shared);
+    [header][..].into()
+}
+
+/// The rows of a picture that is given in bands.
+struct Rows<I, B> {
+    /// The picture's area.
+    part: Area,
+    bands: I,
+    /// The band in use.
+    band: Option<B>,
+    /// Row after the last one of the band in use, counted from the top of the picture.
+    end: u32,
+    /// The row that was returned last, as floats.
+    floats: Vec<[f32; 3]>,
+    /// Index of the row that was returned last.
+    at: Option<u32>,
+}
+
+impl<I, B> Rows<I, B> {
+    /// Returns row `y`, counted from the top of the picture. Rows must be requested in order; one
+    /// may be requested several times.
+    fn row<P: AsFloats>(&mut self, y: u32) -> io::Result<&[[f32; 3]]>
+    where
+        I: Iterator<Item = io::Result<B>>,
+        B: Borrow<Film<P>>,
+    {
+        if self.at == Some(y) {
+            return Ok(&self.floats);
+        }
+        while self.band.is_none() || y >= self.end {
+            let band = self.bands.next().ok_or(io::ErrorKind::UnexpectedEof)??;
+            let film = band.borrow();
+            if film.width() != self.part.width || film.height() == 0 {
+                return Err(other_size(film, self.part));
+            }
+            self.end += film.height();
+            self.band = Some(band);
+        }
+        let band = self.band.as_ref().ok_or(io::ErrorKind::UnexpectedEof)?;
+        let film = band.borrow();
+        let row = film.row(y + film.height() - self.end);
+        self.floats.clear();
+        self.floats.extend(row.iter().map(|pixel| pixel.floats()));
+        self.at = Some(y);
+        Ok(&self.floats)
+    }
+}
+
+/// Returns the error that a film does not have the size of the part that it should show.
+fn other_size<P: AsFloats>(film: &Film<P>, part: Area) -> io::Error {
+    let (width, height) = (film.width(), film.height());
+    let message = format!("a film of {width} × {height} pixels is not the part {part}");
+    io::Error::new(io::ErrorKind::InvalidInput, message)
 }

@@ -19,6 +19,8 @@ mod memory;
 mod no_picture;
 #[cfg(feature = "cli")]
 mod part;
+#[cfg(feature = "cli")]
+mod part_file;
 mod picture;
 mod pixels;
 #[cfg(feature = "png")]
@@ -29,6 +31,8 @@ mod pnm;
 mod read;
 #[cfg(feature = "read")]
 mod read_exr;
+#[cfg(any(feature = "exr", feature = "png"))]
+mod recipe;
 mod srgb;
 #[cfg(feature = "read")]
 mod unreadable;
@@ -37,21 +41,18 @@ mod unreadable;
 #[doc(hidden)]
 pub use self::embed::{data_uri, reduced};
 #[cfg(feature = "exr")]
-pub use self::exr::{LinearFilm, write_exr};
-#[cfg(feature = "cli")]
-#[doc(hidden)]
-pub use self::part::place_of_part;
+pub use self::exr::{write_exr, write_exr_bands};
 #[cfg(feature = "png")]
-pub use self::png::{
-    NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_png,
-};
+pub use self::png::{NotOurs, SIGNATURE, read_part, read_recipe, write_png, write_png_bands};
+#[cfg(any(feature = "exr", feature = "png"))]
+pub use self::recipe::{OVERRIDES_LIMIT, Part, Recipe, TEXT_LIMIT};
 pub use self::{
     compare::{
         CHANNELS, Comparison, HEAT_LEGEND, Largest, SizesDiffer, Tolerance, compare, heat_map, rmse,
     },
     memory::TooLarge,
     picture::{Coding, Opacity, Picture, Rounding},
-    pixels::{AsBytes, Film, Pixel, certified},
+    pixels::{AsBytes, AsFloats, Film, Pixel, certified},
     srgb::Encoder,
 };
 #[cfg(feature = "read")]
@@ -62,3 +63,9 @@ pub use self::{
 };
 #[doc(hidden)]
 pub use self::{mean::mean, memory::reserve as reserve_memory};
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub use self::{
+    part::place_of_part,
+    part_file::{FileRows, exr_rows, png_rows, read_exr_place},
+};

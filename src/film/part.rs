@@ -15,7 +15,7 @@ const MAX_COMPARED: u64 = 100_000_000;
 /// the ratio is near 1.
 const MAX_LEFT: f64 = 0.2;
 
-/// Minimum share of the whole picture's area that a part must have. No position is returned for a
+/// Minimum area of a part, as a fraction of the whole picture's area. No position is returned for a
 /// smaller part, since its few pixels may also fit at a wrong position. The value is a guess.
 const MIN_SHARE: f64 = 0.05;
 

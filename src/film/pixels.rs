@@ -25,6 +25,24 @@ pub trait AsBytes: Pixel {
     fn bytes<'a>(row: &'a [Self], encoder: &Encoder, buffer: &'a mut Vec<u8>) -> &'a [u8];
 }
 
+/// Type of pixel that can be converted to 32-bit floats in linear light.
+pub trait AsFloats: Pixel {
+    /// Converts the pixel, each channel to the nearest 32-bit float.
+    fn floats(self) -> [f32; 3];
+}
+
+impl AsFloats for [f64; 3] {
+    fn floats(self) -> [f32; 3] {
+        self.map(|mean| mean as f32)
+    }
+}
+
+impl AsFloats for [f32; 3] {
+    fn floats(self) -> [f32; 3] {
+        self
+    }
+}
+
 impl Pixel for [f64; 3] {
     fn of(light: [f64; 3], _: &Encoder) -> Self {
         light

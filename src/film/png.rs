@@ -1,11 +1,16 @@
 //! PNG files: pixels in 8-bit sRGB, and the text of the scene that the picture shows.
 //!
 //! Before the pixels, the file contains compressed iTXt chunks with these keywords: `Software`,
-//! Pinhole's version; `pinhole:scene`, the scene's text; `pinhole:set` for each `--set` argument;
-//! and `pinhole:crop`, the rendered part as `X,Y,W,H`. The file contains no date and nothing about
-//! the machine, so that equal scenes give equal files.
+//! Pinhole's version; `pinhole:scene`, the scene's text; and `pinhole:set` for each `--set`
+//! argument. If it shows only a part of a picture, it also contains `pinhole:crop`, the part as
+//! `X,Y,W,H`; `pinhole:size`, the whole picture's size as `W,H`; and `pinhole:digest`, a digest of
+//! the scene and the overrides. The file contains no date and nothing about the machine, so that
+//! equal scenes give equal files.
 
-use std::io::{self, Write};
+use std::{
+    borrow::Borrow,
+    io::{self, Write},
+};
 
 use fdeflate::BoundedDecompressionError;
 use png::{BitDepth, ColorType, DeflateCompression, Encoder, Filter, SrgbRenderingIntent};
@@ -13,6 +18,7 @@ use thiserror::Error;
 
 use super::{
     pixels::{AsBytes, Film},
+    recipe::{OVERRIDES_LIMIT, Part, Recipe, TEXT_LIMIT},
     srgb,
 };
 use crate::area::Area;
@@ -20,33 +26,16 @@ use crate::area::Area;
 /// The first eight bytes of every PNG file.
 pub const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 
-/// Maximum length, in bytes, of all texts that a PNG stores about its scene. Longer texts are not
-/// stored, and not read from a PNG, so that a small file cannot be unpacked to a huge one. Usual
-/// scenes are far shorter.
-pub const TEXT_LIMIT: usize = 1 << 20;
-
-/// Maximum number of overrides (`--set` arguments) that a PNG stores. If a picture has more,
-/// nothing about its scene is stored, and a file that contains more is rejected. Users give far
-/// fewer.
-pub const OVERRIDES_LIMIT: usize = 1000;
-
 const SOFTWARE: &str = "Software";
 const SCENE: &str = "pinhole:scene";
 const SET: &str = "pinhole:set";
 const CROP: &str = "pinhole:crop";
+const SIZE: &str = "pinhole:size";
+const DIGEST: &str = "pinhole:digest";
 
-/// Everything from which a picture was made. A PNG stores it, so that the picture can be rendered
-/// again.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Recipe {
-    /// The text of the scene.
-    pub scene: String,
-    /// The overrides of the scene's values, i.e. the `--set` arguments, in the order given by the
-    /// user.
-    pub overrides: Vec<String>,
-    /// The part of the picture that was rendered; `None` if all of it was rendered.
-    pub crop: Option<Area>,
-}
+/// Maximum length, in bytes, of each text that says which part of a picture a file shows. Three
+/// times as long as the longest that Pinhole writes, a digest.
+const PART_LIMIT: usize = 192;
 
 /// Error: the scene of a picture cannot be read from its PNG file.
 #[derive(Debug, Error)]
@@ -69,32 +58,17 @@ pub enum NotOurs {
     /// A text in the file is not UTF-8.
     #[error("the picture carries a scene or an override that is not UTF-8 text")]
     NotUtf8,
-    /// The crop in the file is not a valid area. The field contains the invalid text.
+    /// The crop in the file, or the size of the whole picture, is invalid. The field contains the
+    /// invalid text.
     #[error("the picture carries a crop that makes no sense, `{0}`")]
     Crop(String),
+    /// The file does not say which part of a whole picture it shows.
+    #[error("it is no part of a picture: it carries no crop with the size of the whole")]
+    NoPart,
 }
 
-impl Recipe {
-    /// Returns whether a PNG stores the recipe's texts: their total length and the number of
-    /// overrides must be within the limits.
-    pub fn fits(&self) -> bool {
-        let overrides: usize = self.overrides.iter().map(String::len).sum();
-        let crop = self.crop.map_or(0, |crop| crop.to_string().len());
-        self.overrides.len() <= OVERRIDES_LIMIT && self.scene.len() + overrides + crop <= TEXT_LIMIT
-    }
-
-    fn texts(&self) -> impl Iterator<Item = (&'static str, String)> {
-        let overrides = self.overrides.iter().map(|set| (SET, set.clone()));
-        let crop = self.crop.map(|crop| (CROP, crop.to_string()));
-        [(SCENE, self.scene.clone())]
-            .into_iter()
-            .chain(overrides)
-            .chain(crop)
-    }
-}
-
-/// Writes a picture as a PNG. Also stores `recipe`, unless its texts are too long
-/// ([`fits`](Recipe::fits)).
+/// Writes a picture as a PNG. Also stores `recipe`, except for the scene and its overrides if they
+/// are too long ([`fits`](Recipe::fits)).
 ///
 /// # Errors
 ///
@@ -104,7 +78,23 @@ pub fn write_png<P: AsBytes>(
     recipe: Option<&Recipe>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let mut encoder = Encoder::new(out, film.width(), film.height());
+    let size = [film.width(), film.height()];
+    write_png_bands(size, recipe, out, [Ok(film)])
+}
+
+/// Writes a picture as [`write_png`] does, from bands of rows, from the top to the bottom. So the
+/// whole picture need not be in memory. `size` has the numbers of columns and rows.
+///
+/// # Errors
+///
+/// `out` cannot be written to, a band is an error, or the bands do not have the picture's size.
+pub fn write_png_bands<P: AsBytes, B: Borrow<Film<P>>>(
+    size: [u32; 2],
+    recipe: Option<&Recipe>,
+    out: &mut dyn Write,
+    bands: impl IntoIterator<Item = io::Result<B>>,
+) -> io::Result<()> {
+    let mut encoder = Encoder::new(out, size[0], size[1]);
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
@@ -116,8 +106,7 @@ pub fn write_png<P: AsBytes>(
     let mut writer = encoder.write_header()?;
 
     let software = concat!("pinhole ", env!("CARGO_PKG_VERSION"));
-    let recipe = recipe.filter(|recipe| recipe.fits());
-    let texts = recipe.into_iter().flat_map(Recipe::texts);
+    let texts = recipe.into_iter().flat_map(texts);
     for (keyword, text) in [(SOFTWARE, software.to_owned())].into_iter().chain(texts) {
         let mut chunk = png::text_metadata::ITXtChunk::new(keyword, text);
         chunk.compressed = true;
@@ -129,12 +118,40 @@ pub fn write_png<P: AsBytes>(
     let mut rows = writer.stream_writer_with_size(1 << 16)?;
     let encoder = srgb::Encoder::default();
     let mut buffer = Vec::new();
-    for y in 0..film.height() {
-        rows.write_all(P::bytes(film.row(y), &encoder, &mut buffer))?;
+    for band in bands {
+        let band = band?;
+        let film = band.borrow();
+        if film.width() != size[0] {
+            return Err(io::ErrorKind::InvalidInput.into());
+        }
+        for y in 0..film.height() {
+            rows.write_all(P::bytes(film.row(y), &encoder, &mut buffer))?;
+        }
     }
     rows.finish()?;
     writer.finish()?;
     Ok(())
+}
+
+/// Returns the keywords and texts with which a PNG stores a recipe.
+fn texts(recipe: &Recipe) -> Vec<(&'static str, String)> {
+    let mut texts = Vec::new();
+    if recipe.fits() {
+        texts.push((SCENE, recipe.scene.clone()));
+        texts.extend(recipe.overrides.iter().map(|set| (SET, set.clone())));
+    }
+    if let Some(crop) = recipe.crop {
+        texts.push((CROP, crop.to_string()));
+    }
+    if let Some(Part {
+        size: [width, height],
+        digest,
+        ..
+    }) = recipe.part()
+    {
+        texts.extend([(SIZE, format!("{width},{height}")), (DIGEST, digest)]);
+    }
+    texts
 }
 
 /// Reads the scene and its overrides from a PNG file. Nothing after the start of the pixels is
@@ -145,42 +162,100 @@ pub fn write_png<P: AsBytes>(
 /// The file is damaged, contains no scene or an invalid text, or contains too much text or too many
 /// overrides.
 pub fn read_recipe(picture: &[u8]) -> Result<Recipe, NotOurs> {
-    let mut rest = picture.strip_prefix(&SIGNATURE).ok_or(NotOurs::Damaged)?;
-    let (mut scene, mut overrides, mut crop) = (None, Vec::new(), None);
-    let mut left = TEXT_LIMIT;
-    loop {
-        let (kind, content);
-        (kind, content, rest) = chunk(rest).ok_or(NotOurs::Damaged)?;
-        let (keyword, is_packed, text) = match kind {
-            b"IDAT" => break,
-            b"iTXt" => international_text(content).ok_or(NotOurs::Damaged)?,
-            _ => continue,
-        };
-        let keyword = [SCENE, SET, CROP]
-            .into_iter()
-            .find(|ours| ours.as_bytes() == keyword);
-        let Some(keyword) = keyword else { continue };
-        let text = if is_packed {
-            fdeflate::decompress_to_vec_bounded(text, left).map_err(not_unpacked)?
-        } else if text.len() > left {
-            return Err(NotOurs::TooMuchText);
-        } else {
-            text.to_owned()
-        };
-        left -= text.len();
-        let text = String::from_utf8(text).map_err(|_| NotOurs::NotUtf8)?;
-        match keyword {
-            SCENE => scene = Some(text),
-            SET if overrides.len() == OVERRIDES_LIMIT => return Err(NotOurs::TooManyOverrides),
-            SET => overrides.push(text),
-            _ => crop = Some(text.parse().map_err(|_| NotOurs::Crop(text))?),
-        }
-    }
+    let texts = StoredTexts::read(picture)?;
     Ok(Recipe {
-        scene: scene.ok_or(NotOurs::NoScene)?,
-        overrides,
-        crop,
+        scene: texts.scene.ok_or(NotOurs::NoScene)?,
+        overrides: texts.overrides,
+        crop: texts.crop,
+        size: texts.size,
     })
+}
+
+/// Reads which part of a picture a PNG file shows, and the scene and its overrides if they are not
+/// too long. Nothing after the start of the pixels is read.
+///
+/// # Errors
+///
+/// The file is damaged, shows no part, or contains an invalid text, too much text or too many
+/// overrides.
+pub fn read_part(picture: &[u8]) -> Result<(Part, Option<Recipe>), NotOurs> {
+    let texts = StoredTexts::read(picture)?;
+    let part = || {
+        Some(Part {
+            area: texts.crop?,
+            size: texts.size?,
+            digest: texts.digest?,
+        })
+    };
+    let part = part().ok_or(NotOurs::NoPart)?;
+    let recipe = texts.scene.map(|scene| Recipe {
+        scene,
+        overrides: texts.overrides,
+        crop: texts.crop,
+        size: texts.size,
+    });
+    Ok((part, recipe))
+}
+
+/// The texts of a PNG file that Pinhole wrote. Those that are missing are `None`.
+#[derive(Default)]
+struct StoredTexts {
+    scene: Option<String>,
+    overrides: Vec<String>,
+    crop: Option<Area>,
+    size: Option<[u32; 2]>,
+    digest: Option<String>,
+}
+
+impl StoredTexts {
+    fn read(picture: &[u8]) -> Result<Self, NotOurs> {
+        let mut rest = picture.strip_prefix(&SIGNATURE).ok_or(NotOurs::Damaged)?;
+        let mut found = Self::default();
+        let mut left = TEXT_LIMIT;
+        loop {
+            let (kind, content);
+            (kind, content, rest) = chunk(rest).ok_or(NotOurs::Damaged)?;
+            let (keyword, is_packed, text) = match kind {
+                b"IDAT" => break,
+                b"iTXt" => international_text(content).ok_or(NotOurs::Damaged)?,
+                _ => continue,
+            };
+            let keyword = [SCENE, SET, CROP, SIZE, DIGEST]
+                .into_iter()
+                .find(|ours| ours.as_bytes() == keyword);
+            let Some(keyword) = keyword else { continue };
+            let is_of_scene = keyword == SCENE || keyword == SET;
+            let limit = if is_of_scene { left } else { PART_LIMIT };
+            let text = if is_packed {
+                fdeflate::decompress_to_vec_bounded(text, limit).map_err(not_unpacked)?
+            } else if text.len() > limit {
+                return Err(NotOurs::TooMuchText);
+            } else {
+                text.to_owned()
+            };
+            if is_of_scene {
+                left -= text.len();
+            }
+            let text = String::from_utf8(text).map_err(|_| NotOurs::NotUtf8)?;
+            match keyword {
+                SCENE => found.scene = Some(text),
+                SET if found.overrides.len() == OVERRIDES_LIMIT => {
+                    return Err(NotOurs::TooManyOverrides);
+                }
+                SET => found.overrides.push(text),
+                CROP => found.crop = Some(text.parse().map_err(|_| NotOurs::Crop(text))?),
+                SIZE => found.size = Some(size(&text).ok_or(NotOurs::Crop(text))?),
+                _ => found.digest = Some(text),
+            }
+        }
+        Ok(found)
+    }
+}
+
+/// Parses the numbers of columns and rows of a picture, written as `W,H`.
+fn size(text: &str) -> Option<[u32; 2]> {
+    let (width, height) = text.split_once(',')?;
+    Some([width.parse().ok()?, height.parse().ok()?])
 }
 
 /// Reads a chunk of a PNG. Returns its type, its content, and the bytes after it. For the chunk of

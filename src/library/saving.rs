@@ -38,7 +38,8 @@ impl Picture {
             #[cfg(feature = "exr")]
             Some("exr") => files::write(path, Purpose::Named, &cancel::NEVER, |out| {
                 let whole = crate::area::Area::whole(self.width(), self.height());
-                film::write_exr(self.film(), whole, whole, out)
+                let digest = self.recipe().map(|recipe| recipe.digest());
+                film::write_exr(self.film(), whole, whole, digest.as_deref(), out)
             }),
             _ => {
                 let message = "a picture's file ends in .png or .exr";
@@ -53,7 +54,6 @@ impl Picture {
 
     /// Returns the scene's text and its settings (as of `--set`) in the form in which a PNG stores
     /// them. Returns `None` if they are unknown.
-    #[cfg(feature = "png")]
     fn recipe(&self) -> Option<film::Recipe> {
         let sources = self.sources()?;
         Some(film::Recipe {
@@ -64,6 +64,7 @@ impl Picture {
                 .map(|set| set.text().to_owned())
                 .collect(),
             crop: self.coded.crop,
+            size: None,
         })
     }
 }

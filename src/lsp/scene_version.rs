@@ -1,8 +1,8 @@
 //! Caches the scene of one version of a text, together with the data from which its pictures and
 //! rays are traced ([`World`]).
 //!
-//! Both are computed only once for a version. Without the cache, each click on a picture of 100 000
-//! spheres would first prepare all spheres for tracing.
+//! The scene and this data are computed only once for each version. Without the cache, each click
+//! on a picture of 100 000 spheres would first prepare all spheres for tracing.
 
 use std::collections::VecDeque;
 

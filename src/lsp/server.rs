@@ -8,8 +8,9 @@
 //! requests about it are answered. Diagnostics are computed only for the last version of a text.
 //!
 //! A frame, i.e. a picture for a page, is rendered in slices while no other request waits. It is
-//! dropped if its text changes, unless the text had errors and the request has the parameter
-//! `last`.
+//! dropped if its text changes. If the text has errors, a request with the parameter `last` is
+//! answered with a frame of the last version without errors; rendering of this frame continues when
+//! the text changes.
 
 use std::{
     cell::LazyCell,

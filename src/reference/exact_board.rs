@@ -16,7 +16,7 @@ pub struct ExactBoard {
     /// The linear forms N_a and N_b. The point (x, y) of the picture shows the point (N_a/L, N_b/L)
     /// of the board, in squares, where L is the form `below`.
     pub across: [[N; 3]; 2],
-    /// The linear form L, the denominator of both coordinates on the board.
+    /// The linear form L, the denominator of the coordinates N_a/L and N_b/L on the board.
     pub below: [N; 3],
 }
 

@@ -48,8 +48,8 @@ pub use self::{
 /// Control of a render: its threads, its progress, and its cancellation.
 #[derive(Clone, Copy)]
 pub struct Control<'a> {
-    /// Number of threads. `None` stands for the process's limit or, if there is no limit, for one
-    /// thread per processor.
+    /// Number of threads. If it is `None`, the process's limit is used or, if there is no limit,
+    /// one thread per processor.
     pub threads: Option<NonZero<usize>>,
     /// Function that is called with the number of samples (or of exact pixels) that were finished
     /// since its last call. Any thread may call it.

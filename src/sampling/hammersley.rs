@@ -18,8 +18,8 @@ use super::{
 pub struct Hammersley {
     n: u64,
     columns: Strata,
-    /// The n columns, stored twice in a row, so that n successive columns can be read from any
-    /// column on. Empty if there are too many to be stored.
+    /// The pixel's n columns of width 1/n, stored twice in a row, so that n successive columns can
+    /// be read from any column on. Empty if there are too many to be stored.
     turned: Vec<Stratum>,
     /// The coordinate y of each point before the shift, in units of 2^−64; empty if there are too
     /// many to be stored.

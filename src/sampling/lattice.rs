@@ -46,10 +46,10 @@ pub fn offset_of_bits(bits: u64) -> f64 {
 #[derive(Debug)]
 pub struct Strata {
     n: u64,
-    /// Minimum number of possible places in a stratum, ⌊2^53/n⌋; some strata have one more.
+    /// Minimum number of possible offsets in a stratum, ⌊2^53/n⌋; some strata have one more.
     least: u64,
-    /// All n strata, and at the index n the stratum that would follow the last. Empty if n exceeds
-    /// [`MAX_STORED`].
+    /// All n strata, and one more at the index n, whose start is the end of the last stratum. Empty
+    /// if n exceeds [`MAX_STORED`].
     stored: Vec<Stratum>,
 }
 

@@ -7,7 +7,8 @@
 //! order, on any number of threads, with the same result.
 //!
 //! A sample's position is an offset from the middle of its pixel, x to the right and y down, in
-//! [−1/2, 1/2). Each method has a file:
+//! [−1/2, 1/2). Each method has a file. A method is unbiased if the expected mean of a pixel's
+//! samples is the exact mean over the pixel:
 //!
 //! | method | file | unbiased |
 //! | --- | --- | --- |

@@ -16,7 +16,8 @@ use crate::area::Area;
 /// A node of a binary tree: a rectangle of pixels, and the number of sample points in it.
 #[derive(Clone, Copy)]
 struct Node {
-    /// Path from the root of the tree: a leading 1, then one bit per cut.
+    /// Binary number that identifies the node by its path from the root of the tree: a leading 1,
+    /// then for each cut the index of the half, 0 or 1.
     path: u64,
     area: Area,
     points: u64,

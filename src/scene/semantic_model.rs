@@ -25,7 +25,7 @@ use crate::{
 /// is left out.
 #[derive(Clone, Debug)]
 pub struct Parts {
-    /// The picture.
+    /// The picture's size and background.
     pub image: Option<Image>,
     /// The camera.
     pub camera: Option<Camera>,

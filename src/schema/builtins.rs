@@ -42,7 +42,7 @@ pub const FUNCTIONS: &[Function] = functions! {
 /// A function of the language.
 #[derive(Clone, Copy, Debug)]
 pub struct Function {
-    /// The name.
+    /// Name of the function.
     pub name: &'static str,
     /// The types of the arguments.
     pub takes: &'static [Type],

@@ -1,7 +1,9 @@
-//! Limits the time, the bytes and the number of connections that have not sent a valid token.
+//! Limits connections that have not sent a valid token: how long each may stay open, how many bytes
+//! it may send, and how many there may be.
 //!
 //! Any program on this machine can connect and keep a connection open without sending anything. If
-//! there are too many idle connections, the oldest is closed, so that they do not exclude others.
+//! there are too many such connections, the oldest is closed, so that a new connection is always
+//! accepted.
 
 use std::{
     collections::VecDeque,

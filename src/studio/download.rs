@@ -53,6 +53,7 @@ pub(super) fn recipe(scene: String) -> Recipe {
         scene,
         overrides: Vec::new(),
         crop: None,
+        size: None,
     }
 }
 

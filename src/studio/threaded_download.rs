@@ -50,7 +50,7 @@ pub fn answer(request: Request, watch: &Watch) -> Message {
 fn file(method: &str, params: &Value, watch: &Watch) -> Answer {
     let (scene, text) = scene(params)?;
     let made = match method {
-        EXR => exr(&scene, watch),
+        EXR => exr(&scene, text, watch),
         _ => png(&scene, text, watch),
     };
     let file = made.map_err(|error| {
@@ -75,11 +75,11 @@ fn png(scene: &Scene, text: String, watch: &Watch) -> Made {
     Ok(file)
 }
 
-fn exr(scene: &Scene, watch: &Watch) -> Made {
+fn exr(scene: &Scene, text: String, watch: &Watch) -> Made {
     let film: Film<[f32; 3]> = rendered(scene, watch)?;
     let whole = Area::whole(film.width(), film.height());
     let mut file = Cursor::new(Vec::new());
-    film::write_exr(&film, whole, whole, &mut file)?;
+    film::write_exr(&film, whole, whole, Some(&recipe(text).digest()), &mut file)?;
     Ok(file.into_inner())
 }
 

@@ -21,11 +21,10 @@ pub struct Basis {
     pub u: [Big; 3],
     /// Unit vector to the picture's top.
     pub v: [Big; 3],
+    /// Unit vector opposite to the view direction.
+    pub w: [Big; 3],
     /// Side of a pixel at depth 1: view_height/(height · d). The view plane is `view_height` high
     /// and has the distance d from the eye; the picture is `height` pixels high.
-    pub w: [Big; 3],
-    /// Side of a pixel at depth 1: view_height/(height · d), with the picture's height in pixels
-    /// and the distance d of the view plane.
     pub pitch: Big,
     /// Distance from the eye to the view plane, in metres.
     pub d: Big,

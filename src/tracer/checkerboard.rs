@@ -1,14 +1,14 @@
 //! The checkerboard: an infinite horizontal plane of squares.
 //!
 //! In: the board's height, the side of its squares, and the camera. Out: for a ray, its crossing
-//! and the colour there. If the ray hits the plane, the plane's inverse depth ℓ is positive, and
-//! x/square is a ratio of linear forms, N/ℓ.
+//! and the colour there. If the ray hits the plane, the plane's inverse depth ℓ is positive. The
+//! coordinate x or z of the crossing, in squares, is then a ratio of linear forms, N/ℓ.
 //!
 //! N is measured from the line between squares that is nearest to the eye, not from the world's
 //! origin. The distance from the origin to this line would make N large and thus less precise. Only
-//! the parity of this distance in squares matters, and it is stored separately. The errors are
-//! those of the forms. If the error interval of a ratio contains a whole number, the colour is
-//! uncertain.
+//! the parity of this distance in squares matters, and it is stored separately. The error of a
+//! ratio follows from the errors of its forms. If the error interval of a ratio contains a whole
+//! number, the colour is uncertain.
 
 use super::{
     camera::{Camera, Direction, Window},
@@ -20,10 +20,10 @@ use crate::{
     scene,
 };
 
-/// Limit, in squares, below which the origin of a board's coordinates is moved.
-/// [`Checkerboard::local`] moves it to the part of the board that a rectangle shows. The distance
-/// is a rounded quotient. From 2^52 on, it need not be the nearest whole number, and its parity
-/// could be wrong.
+/// Limit, in squares, of the distance by which the origin of a board's coordinates is moved.
+/// [`Checkerboard::local`] moves the origin to the part of the board that a rectangle shows, unless
+/// the distance reaches the limit. The distance is a quotient, rounded to a whole number. From 2^52
+/// on, this need not be the nearest whole number, and its parity could be wrong.
 const MOST_SQUARES: f64 = (1u64 << 52) as f64;
 
 /// A checkerboard prepared for one picture.
@@ -181,7 +181,8 @@ impl Checkerboard<Double> {
 
 /// A coordinate of the eye as a whole number of squares and a remainder.
 struct EyeOffset {
-    /// The remainder, at most half a square in magnitude.
+    /// What remains of the coordinate after subtracting the whole squares: at most half the side of
+    /// a square in magnitude.
     rest: f64,
     /// Whether the number of whole squares is odd.
     odd: bool,

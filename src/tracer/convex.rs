@@ -36,8 +36,8 @@ pub struct Convex<T: Real> {
     /// Number of the forms that bound the object, plus the number of the faces where rays first hit
     /// it. The sum is the index in `forms` of the first of the other faces.
     firsts: u8,
-    /// Number of each face's plane. The faces where rays first hit the object come before the other
-    /// faces.
+    /// Numbers that identify the planes of the faces. The faces where rays first hit the object
+    /// come before the other faces.
     planes: [u8; 6],
     /// Whether the eye is inside the object. If it is, a ray leaves the object at the nearest of
     /// its crossings with the faces' planes. Otherwise, the ray enters the object at the farthest

@@ -1,9 +1,10 @@
 //! The box: six faces along the axes.
 //!
-//! In: the box's corners and the camera. Out: a [`Convex`] object, and its corners. With μ = 1/λ, a
-//! point λr lies between the planes x = lo and x = hi (relative to the eye) if lo·μ ≤ r_x ≤ hi·μ.
-//! Depending on the side of the planes on which the eye lies, each inequality bounds μ from above
-//! or from below. Each bound is a linear form, without a division by r_x, which may be zero.
+//! In: the box's corners and the camera. Out: a [`Convex`] object, and its corners. A point of a
+//! ray is λr relative to the eye, where r is the ray's direction. With μ = 1/λ, the point lies
+//! between the planes x = lo and x = hi (also relative to the eye) if lo·μ ≤ r_x ≤ hi·μ. Depending
+//! on the side of the planes on which the eye lies, each inequality bounds μ from above or from
+//! below. Each bound is a linear form, without a division by r_x, which may be zero.
 
 use std::{array, cmp::Ordering};
 

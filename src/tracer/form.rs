@@ -11,7 +11,7 @@ use crate::math::{Ball, Ball3, Double, Real, UP};
 /// A linear form aX + bY + c over the view plane, with one error bound for all its values.
 #[derive(Clone, Debug)]
 pub struct Form<T: Real> {
-    /// The factors a, b and c of X, Y and 1.
+    /// The factors a, b and c in aX + bY + c.
     factors: [T; 3],
     /// Error bound of a computed value of the form in the camera's window.
     rad: T::Radius,

@@ -5,9 +5,9 @@ use crate::math::UP;
 /// The numbers from `low` to `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// The least number.
+    /// The least number of the interval.
     pub low: f64,
-    /// The greatest number.
+    /// The greatest number of the interval.
     pub high: f64,
 }
 

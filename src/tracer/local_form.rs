@@ -45,7 +45,8 @@ pub struct Patch {
 /// A linear form of the offset (x, y) from the centre of a [`Patch`], in units of its sides.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalForm {
-    /// Factors of x, y and 1.
+    /// Factors of x, y and 1 in the form, where (x, y) is the offset from the rectangle's centre in
+    /// units of its sides.
     pub factors: [f64; 3],
     pub rad: f64,
 }

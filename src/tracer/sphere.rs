@@ -2,13 +2,13 @@
 //!
 //! In: a sphere's centre and radius, and the camera. Out: for a ray, its crossings; for a
 //! rectangle, the ranges of the crossings' inverse depths. Let c be the centre relative to the eye,
-//! R the radius, and C = c·c − R² (the power of the eye). The ray λr hits the sphere where λ² r·r −
-//! 2λ c·r + C = 0. A quarter of the discriminant is Q = R² r·r − |c × r|² by Lagrange's identity.
-//! Unlike (c·r)² − (r·r) C, this does not subtract large squares if the sphere is small and far
-//! away.
+//! R the radius, r the direction of a ray, and C = c·c − R² (the power of the eye). The ray λr hits
+//! the sphere where λ² r·r − 2λ c·r + C = 0. A quarter of the discriminant is Q = R² r·r − |c × r|²
+//! by Lagrange's identity. Unlike (c·r)² − (r·r) C, this does not subtract large squares if the
+//! sphere is small and far away.
 //!
-//! Q and c·r each have one error bound for the whole window, which includes rounding errors. C is
-//! computed exactly if it is small.
+//! Q and c·r each have one error bound for all rays in the camera's window, which includes rounding
+//! errors. C is computed exactly if it is small.
 
 use std::cmp::Ordering;
 
@@ -297,10 +297,12 @@ impl Sphere<f64> {
     /// the discriminant of the equation for a ray's crossings, and the scalar product of the
     /// sphere's centre and the ray's direction ([`Sphere`]).
     pub fn local(&self, patch: &Patch) -> (LocalQuadratic, LocalForm) {
-        // Q is a quarter of the discriminant. The factors of its local form consist of the same
-        // products as Q, and the rectangle lies within the window. Eight times Q's error bound
-        // therefore covers their errors: once for the value at the centre, twice for each of the
-        // two gradients, and once for each of the three second derivatives.
+        // Factor by which the error bound of Q is multiplied to bound the errors of Q's local form.
+        // Q is a quarter of the discriminant of the equation for a ray's crossings ([`Sphere`]).
+        // The factors of the local form consist of the same products as Q, and the rectangle lies
+        // within the window. Eight times Q's error bound therefore covers their errors: once for
+        // the value at the centre, twice for each of the two gradients, and once for each of the
+        // three second derivatives.
         const TIMES: f64 = 8.0;
         let [cx, cy, cz] = self.center;
         let (r, [width, height]) = (&patch.center, patch.sides);

@@ -135,8 +135,9 @@ pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
 struct SeenPlane<T: Real> {
     normal: Ball3<T>,
     height: Ball<T>,
-    /// Side of the plane on which the eye lies: the sign of n·q for a point q of the plane. The
-    /// normal n is the given one, before it is divided by its greatest component.
+    /// Side of the plane on which the eye lies: the sign of n·q for a point q of the plane,
+    /// relative to the eye. The normal n is the given one, before it is divided by its greatest
+    /// component.
     side: Ordering,
 }
 

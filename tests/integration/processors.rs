@@ -72,7 +72,7 @@ fn draw(folder: &Path) {
             let whole = whole(&scene);
             let film: Film = rendered(&scene, whole, &Control::default()).into_film();
             let mut exr = Cursor::new(Vec::new());
-            write_exr(&film, whole, whole, &mut exr).unwrap();
+            write_exr(&film, whole, whole, None, &mut exr).unwrap();
             let mut png = Vec::new();
             write_png(&film, None, &mut png).unwrap();
             for (ending, bytes) in [("exr", exr.into_inner()), ("png", png)] {

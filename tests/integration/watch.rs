@@ -6,10 +6,10 @@
 
 use std::{
     cell::RefCell,
-    fs,
+    fs, io,
     os::unix::fs::symlink,
     path::PathBuf,
-    process::Child,
+    process::{Child, Command, Stdio},
     thread,
     time::{Duration, Instant},
 };
@@ -54,14 +54,20 @@ impl Watch {
     }
 
     fn start(folder: Folder, arguments: &str) -> Self {
-        let mut command = folder.command(&format!("watch {arguments}"));
-        let said = NamedTempFile::new().unwrap();
-        let child = command.stderr(said.reopen().unwrap()).spawn().unwrap();
-        Self {
+        let command = folder.command(&format!("watch {arguments}"));
+        Self::of(folder, command).unwrap()
+    }
+
+    fn of(folder: Folder, mut command: Command) -> io::Result<Self> {
+        let said = NamedTempFile::new()?;
+        let output = said.reopen()?;
+        let command = command.stdout(output.try_clone()?).stderr(output);
+        let child = command.spawn()?.into();
+        Ok(Self {
             folder,
-            child: child.into(),
+            child,
             said,
-        }
+        })
     }
 
     fn path(&self, name: &str) -> PathBuf {
@@ -324,6 +330,30 @@ fn watch_writes_the_same_picture_as_render() {
         let line = format!("render {arguments} -o c.{name}");
         watch.folder.done(&line);
         assert!(watch.folder.read(&format!("c.{name}")) == picture, "{name}");
+    }
+}
+
+/// The command `script` gives the program a terminal. Without `script`, nothing is tested.
+#[test]
+fn with_show_every_picture_is_drawn_in_the_terminal() {
+    let folder = red();
+    let line = format!("'{}' watch a.scn --show", env!("CARGO_BIN_EXE_pinhole"));
+    let mut command = Command::new("script");
+    command
+        .args(["-qfec", &line, "/dev/null"])
+        .current_dir(folder.path(""))
+        .envs([("TERM", "xterm"), ("COLORTERM", "truecolor")])
+        .env_remove("NO_COLOR")
+        .env_remove("CLICOLOR")
+        .stdin(Stdio::null());
+    let Ok(watch) = Watch::of(folder, command) else {
+        return;
+    };
+    for color in ["red", "olive"] {
+        watch.save(&scene(color));
+        let [r, g, b] = css::color(color).unwrap().to_bytes();
+        let cell = format!("\x1b[38;2;{r};{g};{b}m\x1b[48;2;{r};{g};{b}m▀");
+        watch.wait(color, || watch.count(&cell) > 0);
     }
 }
 

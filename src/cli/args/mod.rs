@@ -11,7 +11,7 @@ use clap::{
 };
 use clap_complete::Shell;
 
-use super::{help, sweep::Sweep};
+use super::{help, shard::Shard, sweep::Sweep};
 use crate::{
     area::Area,
     figure::{KINDS, Kind},
@@ -59,6 +59,9 @@ pub enum Command {
     /// Report speed against error for each method, or how accurate the arithmetic is
     #[command(after_help = help::REPORT_EXAMPLES)]
     Report(ReportArgs),
+    /// Put the parts of one picture together, as a single render would have written it
+    #[command(after_help = help::MERGE_EXAMPLES)]
+    Merge(MergeArgs),
     /// Make a contact sheet: the pictures of scenes side by side, each with its name
     #[command(after_help = help::SHEET_EXAMPLES)]
     Sheet(SheetArgs),
@@ -150,8 +153,30 @@ pub struct RenderArgs {
     /// picture, and replaces a crop that a PNG stores
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
     pub crop: Option<Area>,
+    /// Render the I-th of N bands of rows, so that several machines can share a picture; `merge`
+    /// puts the files together
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["crop", "sweep"])]
+    pub shard: Option<Shard>,
+    /// Render N pictures, a field or a `let` going from one value to another: two numbers, angles
+    /// or vectors. FILE has a place for the number of the picture, from 0, such as `roll-%03d.png`
+    #[arg(long, value_name = "TARGET=FROM..TO/N", allow_hyphen_values = true)]
+    pub sweep: Option<Sweep>,
+    /// Skip pictures of the sweep that are there already, of this scene
+    #[arg(long, requires = "sweep")]
+    pub resume: bool,
     #[command(flatten)]
     pub threads: ThreadArgs,
+}
+
+/// Arguments of `merge`.
+#[derive(Debug, clap::Args)]
+pub struct MergeArgs {
+    /// The parts: PNG or EXR files that `render` wrote with --shard or --crop
+    #[arg(required = true, value_name = "PART")]
+    pub parts: Vec<PathBuf>,
+    /// Where the whole picture goes: a file with the ending of the parts
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub output: PathBuf,
 }
 
 /// Arguments of `check`.

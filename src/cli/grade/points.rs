@@ -15,7 +15,7 @@ use crate::{
 /// points is a short text, so the limit only keeps a wrong file from filling the memory.
 const LIMIT: u64 = 1 << 20;
 
-/// Key in the JSON object `mistakes` that stands for all mistakes without a key of their own.
+/// Key in the JSON object `mistakes` whose points apply to all mistakes without a key of their own.
 const OTHERS: &str = "*";
 
 /// A scheme of points, read from the file in `--points`.
@@ -26,8 +26,8 @@ pub struct PointScheme {
     /// Points that a wrong object costs, however many mistakes it has. A mistake that is listed in
     /// `mistakes` costs the points given there instead.
     pub object: Option<f64>,
-    /// Points that each mistake costs, by the mistake's id. The key [`OTHERS`] stands for all other
-    /// ids.
+    /// Points that each mistake costs, by the mistake's id. The key [`OTHERS`] gives the points of
+    /// the ids that are not listed.
     mistakes: BTreeMap<String, f64>,
 }
 

@@ -6,7 +6,7 @@ use crate::{numbers::significant, syntax::tree::Unit};
 /// Range of a slider that a comment gives for a value, in the unit of that value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CommentRange {
-    /// The lower and the upper end, in the unit of the value.
+    /// The lower and the upper end of the range, in the unit of the value.
     pub ends: [f64; 2],
     /// Distance between neighbouring values of the slider, > 0; `None` if the comment gives no
     /// step.

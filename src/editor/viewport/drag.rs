@@ -380,8 +380,9 @@ struct DragView<'a> {
     image: &'a Image,
     projection: Projection,
     drag: &'a Drag<'a>,
-    /// Points in space by which results are compared if the camera or a checkerboard is dragged.
-    /// Two results agree if these points appear at nearly equal places of the picture.
+    /// Points in space by which two results of the drag are compared if the camera or a
+    /// checkerboard is dragged. Two results agree if these points appear at nearly equal places of
+    /// the picture.
     points: Vec<DVec3>,
 }
 

@@ -91,8 +91,8 @@ const SAME: f64 = 1e-6;
 /// The way in which the numbers that a drag changes are rounded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DecimalRounding {
-    /// Number of decimals of a changed number. A negative number means rounding to tens, hundreds
-    /// and so on.
+    /// Number of decimals to which a changed number is rounded. A negative number means rounding to
+    /// tens, hundreds and so on.
     decimals: i32,
     /// Absolute values of the changes that [`together`] has rounded already. A number that changes
     /// by one of these amounts is not rounded to `decimals` again. Otherwise points of the object

@@ -1,5 +1,5 @@
-//! Compares the computed share of a triangle in a pixel, and its error bound, with the area of a
-//! polygon that is computed with hundreds of bits of precision.
+//! Compares the computed fraction of a pixel's area that a triangle covers, and its error bound,
+//! with the area of a polygon that is computed with hundreds of bits of precision.
 
 use std::cell::RefCell;
 

@@ -80,7 +80,12 @@ impl ExactBranch {
         let determinant = p * r - q * q;
         let inverse = if *p > N::ZERO {
             let steepness = p.sqrt();
-            let sum = &slope + &steepness * &root;
+            // Beyond the branch's end, where Δ is negative, the integral is that up to the end.
+            let sum = if root == N::ZERO {
+                (-&determinant).sqrt()
+            } else {
+                &slope + &steepness * &root
+            };
             sum.clone().max(-sum).ln() / steepness
         } else {
             let one = NUMBER.exact(1.0);

@@ -1,14 +1,17 @@
-//! The board's integral over a polygon of many squares, as a sum along its boundary, by Green's
-//! theorem with periodic Euler polynomials.
+//! Integrates the sign of a checkerboard, 1 on squares of one colour and −1 on the others, over a
+//! polygon of many squares. Green's theorem with periodic Euler polynomials turns the integral into
+//! a sum along the polygon's boundary.
 //!
-//! In: a convex polygon in which the depth m changes little from square to square, and which may
-//! reach the horizon. Out: the integral of the board's sign, with an error bound. The bound covers
-//! three kinds of errors: the truncation of the series and of sums over crossings; rounding errors;
-//! and the displacement of squares by rounding errors of the forms.
+//! In: a convex polygon of the picture in which the depth m changes little from square to square,
+//! and which may reach the horizon. Out: the integral of the board's sign, with an error bound. The
+//! bound covers three kinds of errors: the truncation of series and of sums over the lines that
+//! edges cross; rounding errors; and the displacement of squares by rounding errors of the linear
+//! forms that map the picture to the board ([`Homography`]).
 //!
 //! In the formulas, (a, b) is a point of the board's plane, in squares, and s is the square wave, 1
 //! and −1 in turn from square to square. A unit of the plane at the depth m covers K/m³ square
-//! pixels, where K is a constant ([`Homography`]). n is the number of terms of a series.
+//! pixels, where K is a constant ([`Homography`]). n is the number of terms after which a series is
+//! truncated.
 //!
 //! With the periodic Euler polynomials A_k of [`waves`] and J = K/m³, the sum
 //!
@@ -29,7 +32,7 @@
 //! X = −K·Σ_k (k+1)!/2·S_k·A_k+1(b)·m^(−2−k), k = 1 … n,
 //!
 //! with S_1 = 1 and S_k+1 = γ·S_k + (∂m/∂b)^k, satisfies dX/db = −Q up to order n. With ρ = da/db,
-//! it follows that
+//! and with ΔΨ the difference of Ψ between the ends of the edge, it follows that
 //!
 //! ∫ s(b)·P db = ΔΨ − ∫ s(a)·Q da = ΔΨ + ρ·∫ s(a) dX.
 //!
@@ -38,9 +41,10 @@
 //! ∫ s(b)·P db = −(db/da)·∫ s(b) dX′.
 //!
 //! Partial summation gives ∫ s(a) dX: it is the difference of s(a)·X between the edge's ends, minus
-//! the sum of X times the jump of s(a) at each line that the edge crosses. An edge therefore costs
-//! as many evaluations of X as it crosses lines of one family, and the family with fewer crossings
-//! is chosen.
+//! the sum of X times the jump of s(a) at each line that the edge crosses. The number of
+//! evaluations of X is about the number of crossed lines on which a is a whole number. With X′, it
+//! is about the number of crossed lines on which b is a whole number. Of the two formulas, the one
+//! with fewer lines is used.
 
 use super::super::{budget::PixelBudget, clip::measure};
 use super::crossings::{EdgeSeries, LineCrossings, MAX_TERMS};
@@ -63,8 +67,9 @@ const TRUNCATION: f64 = 1e-3;
 /// they cross infinitely many lines.
 ///
 /// A polygon has noticeable errors on at most two edges that end before the horizon and two that
-/// end on it. Together they are at most 2·(1/9 + 8/9), twice the tolerance. A colour's share is
-/// half of the integral of signs, so its error is at most the tolerance.
+/// end on it. Together they are at most 2·(1/9 + 8/9), twice the tolerance. The area of a colour is
+/// half of the polygon's area plus or minus half of the integral, so its error is at most the
+/// tolerance.
 const FINITE_TAIL: f64 = 1.0 / 9.0;
 /// Maximum truncation error of the sum over the lines that one edge crosses, as a fraction of the
 /// pixel's tolerance. It holds for an edge that ends on the horizon. Other edges of the polygon get
@@ -75,15 +80,16 @@ const ENDLESS_TAIL: f64 = 8.0 / 9.0;
 /// because only the two edges that recede from the eye have long sums; the sums over other edges
 /// hardly contribute.
 const ONLY_FINITE_TAIL: f64 = 1.0;
-/// Minimum fraction of the pixel's tolerance that the truncated sums over one polygon may use up. A
-/// polygon whose area in square pixels is larger than the minimum may use up this area as a
-/// fraction. With a smaller minimum, the sums over tiny polygons would become long. With a larger
+/// Minimum fraction of the pixel's tolerance that the truncated sums over one polygon may use up.
+/// If the polygon's area, in square pixels, is greater than this number, the fraction is the area
+/// instead. With a smaller minimum, the sums over tiny polygons would become long. With a larger
 /// one, the errors of many tiny polygons could exceed the tolerance.
 const MIN_SHARE: f64 = 1.0 / 64.0;
 
-/// Table of (k + 1)!/2, with the index k. The k-th derivative of K/m³ with respect to m is ±K·(k +
-/// 2)!/2·m^(−3−k), which uses the entry k + 1. The series ([`EdgeSeries`]) and the potential
-/// ([`potential`]) consist of such derivatives.
+/// Table of (k + 1)!/2, with the index k. At the depth m, a unit of the floor covers K/m³ square
+/// pixels, where K is a constant ([`Homography`]). The k-th derivative of K/m³ with respect to m is
+/// ±K·(k + 2)!/2·m^(−3−k), which uses the entry k + 1. The series ([`EdgeSeries`]) and the
+/// potential ([`potential`]) consist of such derivatives.
 pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
     let mut all = [0.5; MAX_TERMS + 2];
     let mut k = 1;
@@ -251,10 +257,10 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
 /// along the edge, c is the other one, and m is the depth. The sum over the edge's crossings runs
 /// over the lines of the board on which c is constant.
 struct Edge {
-    /// Sign, +1 or −1, with which the edge's integral is added to the polygon's. It depends on two
-    /// conditions: whether the polygon's boundary runs from the edge's near end to its far end, and
-    /// whether the floor's second coordinate changes at least as much along the edge as the first.
-    /// It is +1 if both hold or neither does.
+    /// +1 or −1: the sign with which the edge's contribution is added to the integral over the
+    /// polygon. It depends on two conditions: whether the polygon's boundary runs from the edge's
+    /// near end to its far end, and whether the floor's second coordinate changes at least as much
+    /// along the edge as the first. The sign is +1 if both conditions hold or neither does.
     sign: f64,
     /// Factor with which the polygon's integral contains the difference of the potential
     /// ([`potential`]) between the edge's ends. It is 1 if the floor's second coordinate changes at
@@ -273,8 +279,8 @@ struct Edge {
     /// Change of t from the near to the far end, where t is the coordinate of the floor that
     /// changes more along the edge. Infinite if the far end is on the horizon.
     length: f64,
-    /// Slope dc/dt of the edge on the floor, where t is the coordinate that changes more along the
-    /// edge, and c the other one.
+    /// Slope dc/dt of the edge on the floor, where t is the floor coordinate that changes more
+    /// along the edge, and c the one that changes less.
     rho: f64,
     /// Derivative dm/dt of the depth m along the edge, where t is the coordinate of the floor that
     /// changes more along the edge.
@@ -287,8 +293,8 @@ struct Edge {
     stride: Double,
     /// Change of the depth m from one crossed line to the next.
     rise: f64,
-    /// Sign, +1 or −1, of the change of c from the near to the far end, where c is the coordinate
-    /// of the floor that changes less along the edge.
+    /// +1 or −1: whether c grows or falls from the near to the far end. c is the floor coordinate
+    /// that changes less along the edge.
     sense: f64,
 }
 

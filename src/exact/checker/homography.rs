@@ -2,11 +2,11 @@
 //! errors displace what the pixel shows.
 //!
 //! In: three linear forms c0·x + c1·y + c2 from the tracer, which give the board's coordinates at a
-//! point (x, y) of a sub-pixel. Out: points of the floor (the infinite plane of the board) and
-//! their depths; the slopes of the depth; the density of the floor in the picture; and a bound on
-//! how far rounding errors displace what a polygon shows. This bound is a first-order perturbation:
-//! each form has an error of four roundings, and the inverse of the forms' matrix maps these errors
-//! to the picture.
+//! point (x, y) of a sub-pixel (a pixel or a square part of one). Out: points of the floor (the
+//! infinite plane of the board) and their depths; the derivatives of the depth; the density of the
+//! floor in the picture; and a bound on how far rounding errors displace what a polygon shows. This
+//! bound is a first-order perturbation: each form has an error of four roundings, and the inverse
+//! of the forms' matrix maps these errors to the picture.
 
 use glam::DVec2;
 
@@ -60,7 +60,8 @@ pub(in crate::exact) struct Homography {
     /// The linear form L, the denominator of the floor's coordinates; 0 on the horizon. It is
     /// scaled by a power of two so that its largest factor is between 1 and 2.
     pub below: [f64; 3],
-    /// Slopes of the depth m on the floor, ∂m/∂a and ∂m/∂b.
+    /// Derivatives ∂m/∂a and ∂m/∂b of the depth m = 1/L with respect to the floor's coordinates a
+    /// and b.
     pub slope: [f64; 2],
     /// Factor K of the floor's density in the picture: a unit of the floor at the depth m covers
     /// K/m³ square pixels.
@@ -68,8 +69,8 @@ pub(in crate::exact) struct Homography {
     /// Maximum relative error of `density` due to rounding in its computation from the linear
     /// forms. Rounding errors in the forms' own factors are not included.
     pub density_error: f64,
-    /// Sign of the determinant of the matrix of the three forms. It depends on whether the floor is
-    /// seen mirrored.
+    /// Sign of the determinant of the matrix of the linear forms N_a, N_b and L ([`Homography`]).
+    /// It depends on whether the floor is seen mirrored.
     pub orientation: f64,
     /// Maximum displacement of a corner of a polygon, or of a line of the board, by rounding
     /// errors: |dx| + |dy|, in pixels.
@@ -85,11 +86,11 @@ pub(in crate::exact) struct Homography {
     horizon_tolerance: f64,
 }
 
-/// A corner of a polygon: the point (a, b) of the floor that it shows, in squares, and the depth m
-/// there.
+/// A corner of a polygon in the picture. `floor` is the point (a, b) of the floor that it shows, in
+/// squares of the board, and `depth` is the depth m = 1/L there (see [`Homography`]).
 ///
-/// On the horizon, `depth` is infinite, and `floor` is the direction (da, db)/dm in which edges
-/// approach the horizon.
+/// On the horizon, this point is infinitely far away: `depth` is infinite, and `floor` is the limit
+/// of (a, b)/m, the direction of the point on the floor.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
     pub floor: [f64; 2],

@@ -1,4 +1,5 @@
-//! The integral of a checkerboard's sign over a convex polygon of the picture.
+//! Integrates a checkerboard's sign, 1 on squares of one colour and −1 on the others, over a convex
+//! polygon of the picture.
 //!
 //! In: a board's linear forms in a sub-pixel ([`homography`]) and a polygon. Out: the area of the
 //! first colour minus that of the second, in square pixels, with an error bound.
@@ -10,9 +11,9 @@
 //! - Pixels that show only a board, with few of its lines, are computed eight at a time
 //!   ([`board_pixels`], [`strips_simd`]).
 //!
-//! Every bound includes the effect of rounding errors of the forms, which displace the squares. If
-//! a bound exceeds the polygon's area, the result is 0, the mean of both colours, with the area as
-//! the bound.
+//! Every bound includes the effect of rounding errors of the linear forms, which displace the
+//! squares. If a bound exceeds the polygon's area, the result is 0, the mean of both colours, with
+//! the area as the bound.
 
 pub(super) mod board_pixels;
 mod crossings;

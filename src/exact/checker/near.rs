@@ -1,11 +1,12 @@
-//! The board's integral over near squares: each square is cut out of the picture.
+//! Integrates a checkerboard's sign, 1 on squares of one colour and −1 on the others, over near
+//! squares: each square is cut out of the picture.
 //!
-//! In: a convex polygon of the picture that does not reach the horizon. Out: the sum of the signed
-//! areas of the squares in it, in square pixels, with an error bound. The board has two families of
-//! lines, those between columns and those between rows of squares. The lines of one family cut the
-//! polygon into strips, and the lines of the other family cut each strip into squares (`clip`). The
-//! bound is the sum of each cut's position error times its length, plus the rounding errors of the
-//! areas.
+//! In: a convex polygon of the picture that does not reach the horizon. Out: the sum of the areas
+//! of the squares in it, each multiplied by its sign, in square pixels, with an error bound. The
+//! board has two families of lines, those between columns and those between rows of squares. The
+//! lines of one family cut the polygon into strips, and the lines of the other family cut each
+//! strip into squares (`clip`). The bound is the sum of each cut's position error times its length,
+//! plus the rounding errors of the areas.
 
 use glam::DVec2;
 

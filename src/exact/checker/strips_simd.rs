@@ -1,22 +1,23 @@
-//! The integral of the board's sign over eight pixels at once, in lanes that the compiler
-//! vectorises.
+//! Integrates a checkerboard's sign, 1 on squares of one colour and −1 on the others, over eight
+//! pixels at once, in lanes that the compiler vectorises.
 //!
 //! In: eight pixels that show only a checkerboard. The board has two families of lines, those
 //! between columns and those between rows of squares. All eight pixels are crossed by the same
 //! number of lines of each family. Out: the integral over each pixel, with a bound on the rounding
 //! errors of areas and on the displacement of lines by rounding.
 //!
-//! The lines of the family with fewer lines cut the pixel into strips. The sign σ_i = (−1)^i
-//! alternates from strip to strip. The lines of the other family have the numbers k = 0, 1, … A
-//! line k divides the plane into two half-planes. Let H_k be the one in which the squares have
-//! greater numbers, and W_k the signed area of the strips in H_k:
+//! The lines of the family with fewer lines cut the pixel into strips i = 0, 1, … Strip i has the
+//! sign σ_i = (−1)^i, which alternates from strip to strip. The lines of the other family that
+//! cross the pixel have the numbers k = 1, 2, … A line k divides the plane into two half-planes.
+//! Let H_k be the one in which the squares have greater numbers, and W_k the sum of the areas of
+//! the strips in H_k, each multiplied by its sign:
 //!
 //! W_k = Σ_i σ_i·|strip i ∩ H_k|.
 //!
-//! W_0 is the signed area of all strips, and s_0 the sign of the pixel's first square. The sign of
-//! squares changes at each line, so that
+//! W_0 is the same sum over the whole strips, and s_0 the sign of the pixel's first square. The
+//! sign of squares changes at each line, so that the integral of the board's sign over the pixel is
 //!
-//! ∬ s(a)·s(b) dx dy = s_0·(W_0 + 2·Σ_k (−1)^k·W_k).
+//! s_0·(W_0 + 2·Σ_k (−1)^k·W_k).
 //!
 //! A strip's area beyond a line is a sum over the strip's sides, each from a point p to a point q:
 //!

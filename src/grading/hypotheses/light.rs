@@ -137,7 +137,7 @@ impl Tabulated {
     }
 }
 
-/// Index of a channel that does not exist. The indices 0, 1 and 2 stand for red, green and blue.
+/// Index of a channel that does not exist. The channels 0, 1 and 2 are red, green and blue.
 pub const NONE: usize = 3;
 
 /// An effect of a program on the light of its picture.

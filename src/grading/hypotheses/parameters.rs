@@ -37,8 +37,8 @@ pub struct Parameter {
     pub fields: Vec<&'static str>,
 }
 
-/// Distance of a far plane that cuts off nothing, in metres. It stands for a missing far plane, so
-/// that a fit has a number to change. Any value far beyond all objects works.
+/// Distance of a far plane that cuts off nothing, in metres. If a scene has no far plane, this
+/// distance is used, so that a fit has a number to change. Any value far beyond all objects works.
 pub const NO_FAR: f64 = 1e9;
 
 /// Returns the fields that can be fitted to a picture. The field `up` is left out, because it turns

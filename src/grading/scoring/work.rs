@@ -14,7 +14,7 @@ use crate::{
 /// unit is about 30 ns. By measurement, a picture of 320 × 180 pixels takes at most about 3 s,
 /// which is enough to find two mistakes in four objects. A picture of 1280 × 720 pixels takes at
 /// most about 4 s.
-const PICTURE: f64 = 8e7;
+const PICTURE: f64 = 9.6e7;
 /// Units of work (about 30 ns each) that are allowed for each pixel of a picture. Large pictures
 /// take longer to compare.
 const PIXEL: f64 = 41.0;

@@ -19,13 +19,13 @@ use crate::grading::hypotheses::{
 /// enough, because the numbers were fitted to a coarser grid before.
 pub const ROUNDS: usize = 4;
 
-/// Tolerance of the observed fraction of a change. A mistake at edges predicts a change of the
-/// picture. The mistake is named only if the whole change is observed, i.e. if the fraction is 1 ±
-/// 0.3. With a larger tolerance, mistakes with a similar effect would be confused.
+/// Tolerance of the fraction of a predicted change that is observed. A mistake at edges predicts a
+/// change of the picture. The mistake is named only if the whole change is observed, i.e. if the
+/// fraction is 1 ± 0.3. With a larger tolerance, mistakes with a similar effect would be confused.
 const SHARE_TOLERANCE: f64 = 0.3;
-/// Threshold of significance, in standard deviations. A mistake at edges predicts a change of the
-/// picture. The mistake is named only if the observed fraction of the change exceeds 0 by this many
-/// standard deviations, because then chance is negligible.
+/// Minimum significance of a predicted change that is observed, in standard deviations. A mistake
+/// at edges predicts a change of the picture. The mistake is named only if the observed fraction of
+/// the change exceeds 0 by this many standard deviations, because then chance is negligible.
 const SURE: f64 = 7.0;
 /// Maximum ratio of two squared differences between a JPEG and its prediction: with a mistake at
 /// edges, and without it. If the ratio is greater, the mistake is not named, because it explains
@@ -54,7 +54,7 @@ const LEAST_WIDE: f64 = 1.1;
 /// A few values suffice, because edges determine a narrow width only roughly.
 const NARROW_WIDTHS: [f64; 3] = [0.25, 0.5, 0.7];
 
-/// Reciprocal of a fraction of a picture's pixels; 1/50 is 2 %. If more pixels are wrong, mistakes
+/// Reciprocal of the fraction of a picture's pixels, 1/50 or 2 %, that may be wrong before mistakes
 /// that are weakly visible everywhere are tried, even if the wrong pixels do not lie at edges. With
 /// a smaller number, such mistakes would be overlooked in more pictures.
 const MUCH_WRONG: usize = 50;
@@ -68,13 +68,15 @@ const MAX_SHIFT_ERROR: f64 = 0.5;
 /// similar shift first. More would take longer, and explain the shift less well.
 const SHIFTS: usize = 4;
 
-/// Threshold of significance on the coarsest grid, in standard deviations. A mistake predicts a
-/// change of the picture. If the observed fraction of the change exceeds 0 by this much, the
-/// mistake is tested on single pixels. The value is low, because this second test decides.
+/// Minimum significance, in standard deviations, of a predicted change that is observed on the
+/// coarsest grid. A mistake predicts a change of the picture. The mistake is tested on single
+/// pixels if the observed fraction of the change exceeds 0 by more than this, and also exceeds
+/// [`HINTED_SHARE`]. The value is low, because the test on single pixels decides.
 const HINTED: f64 = 3.0;
-/// Threshold of the observed fraction of a change on the coarsest grid. A mistake predicts a change
-/// of the picture. If a larger fraction of the change is observed, the mistake is tested on single
-/// pixels. The value is low, because this second test decides.
+/// Minimum fraction of a predicted change that is observed on the coarsest grid. A mistake predicts
+/// a change of the picture. The mistake is tested on single pixels if a larger fraction of the
+/// change is observed, with the significance [`HINTED`]. The value is low, because the test on
+/// single pixels decides.
 const HINTED_SHARE: f64 = 0.3;
 
 /// Returns a hypothesis that explains the picture: `candidate` itself, or `candidate` with a

@@ -2,7 +2,8 @@
 //!
 //! In: a picture and its scene, as a `judge`, which has the picture at several resolutions and a
 //! budget of work. Out: the best hypothesis about the program, and whether it explains the picture.
-//! It does if what it leaves unexplained, its `residual`, is sampling noise.
+//! A hypothesis explains the picture if its `residual`, i.e. what it leaves unexplained, is
+//! sampling noise.
 //!
 //! `forward_selection` extends the few best sets of mistakes by one mistake at a time. It tries
 //! three kinds of mistakes: rows of the table, alone or in combinations that explain something only

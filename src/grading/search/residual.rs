@@ -6,9 +6,9 @@ use crate::grading::{
     scoring::{Displacement, Prediction, work},
 };
 
-/// Reciprocal of the fraction of pixels that may be wrong although a hypothesis is correct. It is
-/// used if the prediction is not exact, i.e. if it was sampled or the picture is a JPEG. Chosen by
-/// trial on pictures with known mistakes.
+/// Reciprocal of the fraction of a picture's pixels that may be wrong although a hypothesis is
+/// correct. It is used if the prediction is not exact, i.e. if it was sampled or the picture is a
+/// JPEG. Chosen by trial on pictures with known mistakes.
 const PIXELS_PER_MISS: usize = 4000;
 
 /// Distance from an edge, in pixels, within which a wrong pixel is attributed to the edge. It

@@ -5,9 +5,9 @@
 //! seen at a point is computed three times: by the [`oracle`](crate::reference::oracle), a
 //! reference tracer with at least 512 bits; by the [`textbook`](crate::reference::textbook)
 //! formulas in `f64`; and by the tracer that renders pictures. Answers that differ from the
-//! oracle's are counted. For one of 16 inputs, the errors of the distance and of the point are also
-//! measured. The tracer is called for one ray at a time; tests verify that SIMD rays give
-//! bit-identical pictures.
+//! oracle's are counted. At every 16th input, the errors of the distance and of the coordinates of
+//! what is seen are also measured. The tracer is called for one ray at a time; tests verify that
+//! SIMD rays give bit-identical pictures.
 //!
 //! By default, the inputs lie close to boundaries between colours: at the neighbouring `f64`s on
 //! both sides, and at distances that are uniform on a logarithmic scale. An input depends only on

@@ -86,9 +86,10 @@ pub(super) struct Trial {
     oracle: Oracle,
 }
 
-/// Number of tested inputs per measurement of errors. Every input tests whether the right object is
-/// seen. Every 16th input also measures the errors of the distance and of the point, which is slow.
-/// A smaller number would give more measurements, but take more time.
+/// Number of tested inputs after which errors are measured once. Every input tests whether the
+/// right object is seen. Every 16th input also measures the errors of the distance and of the
+/// coordinates of what is seen, which is slow. A smaller number would give more measurements, but
+/// take more time.
 const INPUTS_PER_MEASUREMENT: u64 = 16;
 
 /// Ratio of all searches for a boundary between colours to those that use the answers of the
@@ -110,8 +111,8 @@ impl Trial {
     }
 
     /// Compares what the oracle, the textbook formulas and Pinhole see at a point, and counts wrong
-    /// answers in `tally`. For one of [`INPUTS_PER_MEASUREMENT`] inputs, errors of numbers are
-    /// measured, too.
+    /// answers in `tally`. At every 16th point ([`INPUTS_PER_MEASUREMENT`]), also measures the
+    /// errors of the distance and of the coordinates of what is seen.
     pub fn decide(&self, point: SamplePoint, tally: &mut CaseTally) {
         let truth = self.truth(point);
         let pixels = point.map(|(pixel, offset)| f64::from(pixel) + 0.5 + offset);

@@ -13,14 +13,14 @@ use crate::{
 /// one, a report, which usually takes 45 s, would take noticeably longer.
 const MAX_WORK: u64 = 40_000_000;
 
-/// Shares, from 0 to 1, of the pixels that show more than one colour. Only in these pixels can a
-/// sampling method err.
+/// Fractions, from 0 to 1, of a picture's pixels that show more than one colour. Only in these
+/// pixels can a sampling method err.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixture {
-    /// Share of the pixels that show an edge, i.e. several objects, or an object and the
-    /// background.
+    /// Fraction of the picture's pixels that show an edge, i.e. several objects, or an object and
+    /// the background.
     pub edges: f64,
-    /// Share of the pixels that show only a checkerboard, in both of its colours.
+    /// Fraction of the picture's pixels that show only a checkerboard, in both of its colours.
     pub board: f64,
 }
 
@@ -38,15 +38,16 @@ impl Mixture {
     }
 }
 
-/// Returns the share of the pixels that show several entries of the world's palette. An entry is a
-/// colour or, in a world made by [`World::by_object`], an object.
+/// Returns the fraction of the picture's pixels that show several entries of the world's palette.
+/// An entry is a colour or, in a world made by [`World::by_object`], an object.
 fn share_of_mixed(world: &World) -> f64 {
     let whole = world.picture();
     let integrator = Integrator::for_values(world, |_| []).with_work_limit(MAX_WORK);
     let mut mixed: u64 = 0;
     for tile in whole.tiles(2 * GRID) {
         integrator.shares(tile, |_, shares| {
-            // Shares of at most 1e-9 may be rounding errors, so they are ignored.
+            // Fractions of a pixel's area of at most 1e-9 may be rounding errors, so they are
+            // ignored.
             let seen = shares.iter().filter(|(_, share)| *share > 1e-9);
             mixed += u64::from(seen.count() > 1);
         });

@@ -53,8 +53,8 @@ pub struct Measurement {
     pub errors: Vec<f64>,
     /// The exact picture, which is computed without samples. All renders are compared with it.
     pub reference: Exact,
-    /// Shares of the pixels that show several colours. Only in these pixels can a sampling method
-    /// err.
+    /// Fractions of the picture's pixels that show several colours. Only in these pixels can a
+    /// sampling method err.
     pub mixture: Mixture,
     /// Runs of the exact method; `None` if it was not requested.
     pub exact: Option<Vec<Run>>,
@@ -91,17 +91,19 @@ pub struct SeriesPoint {
 /// samples to the power s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EndSlope {
-    /// The slope, by the method of least squares.
+    /// Slope of the logarithm of the error over the logarithm of the number of samples, fitted by
+    /// least squares.
     pub slope: f64,
-    /// Standard error of the slope, from the slopes of single runs; `None` if there are fewer than
-    /// three.
+    /// Standard error of `slope`, computed from the slopes of single runs; `None` if there are
+    /// fewer than three runs.
     pub error: Option<f64>,
 }
 
 impl EndSlope {
-    /// Minimum value of −`slope` at which the report says that more samples help. A smaller value
-    /// may come from noise in the measurement. For independent samples, the value is 0.5, far above
-    /// the minimum.
+    /// Minimum value of −`slope` at which the report says that more samples help, where `slope` is
+    /// that of the logarithm of the error over the logarithm of the number of samples. A smaller
+    /// value may come from noise in the measurement. For independent samples, the value is 0.5, far
+    /// above the minimum.
     const LEAST: f64 = 0.05;
 
     /// Returns the factor by which the error falls if there are four times as many samples,
@@ -177,8 +179,9 @@ impl SeriesPoint {
 }
 
 impl MethodSeries {
-    /// Returns the slope of the error for the last three numbers of samples. Returns `None` if
-    /// fewer than two were measured, or an error is 0.
+    /// Returns the slope of the logarithm of the error over the logarithm of the number of samples,
+    /// for the last three numbers of samples. Returns `None` if fewer than two were measured, or an
+    /// error is 0.
     pub fn slope(&self) -> Option<EndSlope> {
         let slope = |error: &dyn Fn(&SeriesPoint) -> f64| {
             let points = end(&self.points).iter();

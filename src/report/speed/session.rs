@@ -49,7 +49,7 @@ const RUNS: (u64, u64) = (3, 9);
 const SHOWN: u64 = 16;
 
 /// Makes the measurement that the request describes. Calls `progress` after each timed render with
-/// the share of the work that is done. The progress callback in `control` is not called. If the
+/// the fraction of the work that is done. The progress callback in `control` is not called. If the
 /// user cancels the measurement, returns the results so far, marked as interrupted.
 ///
 /// # Errors
@@ -271,8 +271,8 @@ impl Benchmark<'_> {
         Ok(())
     }
 
-    /// Reports the progress. It is the share of the samples that are done or, if their number is
-    /// not known beforehand, the share of the time that has passed.
+    /// Reports the progress. It is the fraction of the samples that are done or, if their number is
+    /// not known beforehand, the fraction of the time that has passed.
     fn report_progress(&self) {
         let measured = &self.measured;
         let share = match self.request.runs {
@@ -316,8 +316,8 @@ fn rendered(
 /// areas, magnified, must fit beside each other on the page; a smaller area would show fewer edges.
 const PART: (u32, u32) = (48, 27);
 
-/// Minimum share of an area's pixels that show another object than the most frequent one. If the
-/// share is smaller, the area is treated as having no edge, and another area is preferred for
+/// Minimum fraction of an area's pixels that show another object than the most frequent one. If the
+/// fraction is smaller, the area is treated as having no edge, and another area is preferred for
 /// comparing the methods. The value is a guess at how much of an edge must be visible.
 const OTHER_OBJECT: f64 = 0.1;
 

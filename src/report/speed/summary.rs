@@ -109,8 +109,9 @@ fn per_pixel(estimate: &Estimate) -> String {
     format!("{} {noun} per pixel", samples(estimate))
 }
 
-/// Returns the table of methods. It has the slope of each method's error and what it means. For
-/// each of `errors`, it has the samples, the CPU time and the elapsed time that the method needs.
+/// Returns the table of methods. For each method, it has the slope of the logarithm of the error
+/// over the logarithm of the number of samples, and what this slope means. For each of `errors`, it
+/// has the samples, the CPU time and the elapsed time that the method needs.
 pub fn table(measured: &Measurement, errors: &[f64]) -> SummaryTable {
     let mut heads = vec!["method".to_owned()];
     heads.extend(

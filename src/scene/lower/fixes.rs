@@ -57,10 +57,11 @@ impl Lowering<'_> {
         Some(Fix::new(title, [edit]).placeholder())
     }
 
-    /// Returns the fixes for two fields of a block that exclude each other. `choice` groups such
-    /// fields into alternatives. For each of the two fields, one fix keeps its alternative and
-    /// removes the fields of all others. The fix is omitted if the alternative to keep lacks a
-    /// field, or if any other field stands between the fields to remove.
+    /// Returns the fixes for two given fields that belong to different alternatives of `choice`, of
+    /// which a block may use only one. There is at most one fix for each of the two fields: it
+    /// keeps the alternative of this field, and removes the given fields of all other alternatives.
+    /// It is omitted if the kept alternative lacks a field that it must have, or if a field that is
+    /// not removed stands between the removed ones.
     pub(super) fn one_of(
         &self,
         block: &LoweredBlock<'_>,

@@ -21,9 +21,9 @@ use crate::{
     syntax::tree::{self, Name, ValueKind},
 };
 
-/// Largest possible picture. It stands in for the image when a sampler is checked before the
-/// picture's size is known. A number of samples that is not too large for this picture is not too
-/// large for any other.
+/// Largest possible picture. It is used instead of the scene's image when a sampler is checked
+/// before the picture's size is known. A number of samples that is not too large for this picture
+/// is not too large for any other.
 const LARGEST: Image = Image {
     width: 1 << 20,
     height: 1 << 20,
@@ -32,7 +32,7 @@ const LARGEST: Image = Image {
 
 /// The meaning of an unknown word: the fields that it probably stands for.
 struct Meant {
-    /// The fields.
+    /// Names of the fields that were probably meant.
     fields: Vec<&'static str>,
     /// The names of the fields, joined for a message.
     shown: String,

@@ -13,11 +13,11 @@ use crate::{
 /// A sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
-    /// The centre.
+    /// Position of the sphere's centre, in metres.
     pub center: DVec3,
     /// Radius in metres, > 0.
     pub radius: f64,
-    /// The colour.
+    /// Colour of the sphere.
     pub color: Color,
 }
 

@@ -1,6 +1,6 @@
 //! Collects needless separators, such as `,` and `;`, and the characters that start comments in
-//! other languages, such as `#`. If a block contains the same one several times, it is reported
-//! once.
+//! other languages, such as `#`. A separator or character that occurs several times in a block is
+//! reported once.
 
 use super::{Recovery, numbers::unit_of};
 use crate::{

@@ -1,4 +1,5 @@
-//! Compares the doubtful area of conics with counts of points.
+//! Compares the doubtful area of a conic, i.e. the area that the conic's error may put on its wrong
+//! side, with counts of points.
 
 use std::cell::RefCell;
 
@@ -7,7 +8,8 @@ use proptest::{prelude::*, test_runner::TestRunner};
 use super::*;
 use crate::reference::tightness::Tightness;
 
-/// Number of points along each side of the pixel.
+/// Number of rows, and of columns, of the grid of points in a pixel. The points at which a conic's
+/// error makes their side uncertain are counted.
 const POINTS: i32 = 300;
 
 /// Tightness of the three bounds whose minimum is [`Conic::doubtful_area`].
@@ -18,7 +20,8 @@ struct Found {
     ellipse: Tightness,
 }
 
-/// Returns the share of the pixel's points at which the form of a conic is within its error.
+/// Returns the fraction of the pixel's grid points at which the absolute value of a conic's form is
+/// at most the form's error.
 fn share(conic: &Conic) -> f64 {
     let [a, b, c, d, e, f] = conic.factors.map(|factor| factor.hi);
     let place = |i: i32| (f64::from(i) + 0.5) / f64::from(POINTS) - 0.5;

@@ -157,7 +157,7 @@ struct Cut<'a, 'b, V> {
     quartering: &'a Quartering<'a>,
     /// The part of the picture that is wanted.
     wanted: Area,
-    /// Whether the whole square is wanted.
+    /// Whether all of the square that is being divided is wanted.
     is_all_wanted: bool,
     visit: &'b mut V,
 }

@@ -55,8 +55,8 @@ export const refreshOutlines = newestOf<void>(async () => {
   const { doc } = editor.view.state;
   const about = { object: selection.index, only: overlays.needsAll ? null : shown };
   const answer = await editor.ask<Overlays>("pinhole/overlays", about);
-  // If the text has errors, the overlays belong to an older text, so nothing can be selected or
-  // dragged by them.
+  // If the text has errors, the overlays belong to an older text, so no object can be selected or
+  // dragged by its overlay.
   overlays.isTrue = answer !== null;
   if (answer !== null && editor.view.state.doc === doc) overlays.data = answer;
   overlays.draw();

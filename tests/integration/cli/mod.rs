@@ -1,6 +1,8 @@
 //! Tests of the program `pinhole` as a user runs it: arguments, files, output and exit status.
 
+mod frames;
 mod render;
+mod shards;
 mod sheet;
 mod terminal;
 #[cfg(unix)]

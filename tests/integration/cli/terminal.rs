@@ -48,6 +48,7 @@ fn messages_escape_control_characters_of_texts_names_and_pictures() {
         scene: SCENE.to_owned(),
         overrides: vec![format!("Ball.radius={CONTROLS}")],
         crop: None,
+        size: None,
     };
     let film = Film::<[u8; 3]>::new(1, 1).unwrap();
     let mut picture = Vec::new();

@@ -3,9 +3,14 @@
 
 mod verdicts;
 
-use std::fs;
+use std::{fs, io::Cursor};
 
 use image::{DynamicImage, ImageBuffer, Rgb, Rgba};
+use pinhole::{
+    area::Area,
+    color::srgb_to_linear,
+    film::{Film, write_exr},
+};
 use serde_json::{Value, json};
 
 use crate::{program::Folder, table::rows};
@@ -86,6 +91,30 @@ rmse      0.00772 in linear light, where white is 1
     });
     assert_eq!(found, expected);
     folder.told("diff b.png c.png --tolerance 20", 0);
+}
+
+#[test]
+fn a_difference_is_told_to_three_digits_below_a_tenth_of_a_step_and_else_to_hundredths() {
+    let folder = Folder::with([]);
+    let whole = Area::whole(1, 1);
+    let write = |name: &str, steps: f64| {
+        let film = Film::from_fn(1, 1, |_, _| [srgb_to_linear(steps / 255.0); 3]).unwrap();
+        let mut bytes = Cursor::new(Vec::new());
+        write_exr(&film, whole, whole, &mut bytes).unwrap();
+        folder.write(name, bytes.into_inner());
+    };
+    write("black.exr", 0.0);
+    for (steps, told) in [
+        (0.000_123_45, "0.000123"),
+        (0.098_76, "0.0988"),
+        (0.123_45, "0.12"),
+        (7.654_32, "7.65"),
+    ] {
+        write("a.exr", steps);
+        let text = folder.run("diff a.exr black.exr").errors;
+        let line = format!("{told} steps: red of pixel (0, 0) is {told} in A and 0 in B, of 255");
+        assert!(text.contains(&line), "{steps}: {text}");
+    }
 }
 
 #[test]

@@ -134,8 +134,10 @@ fn films_of_different_sizes_are_not_compared_or_written_as_parts() {
         (Area::whole(4, 2), Area::whole(2, 4)),
     ] {
         let mut file = Cursor::new(Vec::new());
-        let error = write_exr(&a, part, whole, &mut file).unwrap_err();
-        assert!(error.to_string().contains("4 × 2 pixels"), "{error}");
+        let error = write_exr(&a, part, whole, None, &mut file).unwrap_err();
+        let about = error.to_string();
+        let is_told = about.contains("4 × 2 pixels") || about.contains("does not lie in");
+        assert!(is_told, "{error}");
         assert!(file.into_inner().is_empty());
     }
     assert_eq!(a.into_pixels().len(), 8);
@@ -171,4 +173,28 @@ fn a_sampling_of_another_size_is_refused() {
     let [small, large] = [16, 32].map(|width| example("figure_9_9", width, 9));
     let (world, part) = (World::new(&small), Area::whole(16, 9));
     let _ = render::render(&world, &sampling(&large), part, &Control::default());
+}
+
+#[test]
+fn pixels_that_do_not_fit_their_part_of_a_picture_are_refused() {
+    let put = |part: &str, count: usize| {
+        let mut film: Film<[u8; 3]> = Film::new(4, 3).unwrap();
+        film.put(part.parse().unwrap(), &vec![[7; 3]; count]);
+        film.into_pixels()
+            .iter()
+            .filter(|pixel| **pixel == [7; 3])
+            .count()
+    };
+    assert_eq!(put("1,0,3,2", 6), 6);
+    // The second part and the third continue in the next row, or below the last one.
+    for (part, count) in [
+        ("1,0,3,2", 3),
+        ("2,0,3,2", 6),
+        ("0,2,4,2", 8),
+        ("1,0,3,2", 9),
+    ] {
+        let refused = std::panic::catch_unwind(|| put(part, count)).unwrap_err();
+        let message = refused.downcast_ref::<String>().unwrap();
+        assert!(message.contains("pixels for the part"), "{part}: {message}");
+    }
 }

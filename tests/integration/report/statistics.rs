@@ -50,9 +50,10 @@ fn slopes_and_standard_errors_match_values_computed_by_hand() {
 }
 
 /// Each row has the errors at 1, 4, 16, … samples, and after the arrow up to three expected
-/// numbers. The first is the slope of the logarithm of the error. The second is the factor by which
-/// the error falls if the number of samples is multiplied by 4. The third is the factor by which
-/// the number of samples must be multiplied for a tenth of the error.
+/// numbers. The first is the slope of the logarithm of the error over the logarithm of the number
+/// of samples. The second is the factor by which the error falls if the number of samples is
+/// multiplied by 4. The third is the factor by which the number of samples must be multiplied for a
+/// tenth of the error.
 #[test]
 fn the_slope_is_that_of_the_last_three_points_and_says_what_it_means() {
     for [errors, expected] in rows(

@@ -137,9 +137,10 @@ fn squared_errors_match_theory() {
             variance_of_one_point_per_cell(n, edge)
         });
         assert!(off.abs() < 4.0, "{n}: {off}");
-        // The variance of the fraction is at most as large with n points of a Latin hypercube as
-        // with n − 1 independent points (Owen 1997, "Monte Carlo variance of scrambled net
-        // quadrature"). So `off` may be negative.
+        // For n points of a Latin hypercube, the variance of the fraction of points in the edge's
+        // half-plane is at most that of n − 1 independent points (Owen 1997, "Monte Carlo variance
+        // of scrambled net quadrature"). It may be much smaller, so only an upper limit of `off` is
+        // tested.
         let off = beyond(Method::NRooks, &|edge| {
             variance_of_independent_points(n - 1, edge)
         });

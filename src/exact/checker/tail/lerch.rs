@@ -1,12 +1,13 @@
-//! The Lerch series V_s(θ) = Σ_j e^(iθj)·(w + j)^(−s), j = 0, 1, 2, … for s = 3, 4, 5. It equals an
-//! integral ([`tail`](super)), which is computed from the pole of the integrand and an expansion of
-//! the rest.
+//! The Lerch series V_s(θ) = Σ_j e^(iθj)·(w + j)^(−s), j = 0, 1, 2, … for s = 3, 4, 5. For an edge
+//! of a polygon, w is the depth at the first line that it crosses, divided by the change of the
+//! depth from line to line. The series equals an integral ([`tail`](super)), which is computed from
+//! the pole of the integrand and an expansion of the rest of the integrand.
 
 use super::super::special::{Complex, integrals};
 
 /// Angle |θ|, in radians, below which [`rest_of_pole`] uses a Taylor series, because its closed
 /// formula loses digits by cancellation. With this value, the first omitted term, θ⁹/47900160, is
-/// 100 roundings; the Lerch series, to which it contributes, may have an error of 500 roundings.
+/// 100 unit roundoffs; the Lerch series, to which it contributes, may have an error of 500.
 const NEAR_POLE: f64 = 0.2;
 
 /// Computes the Lerch series Σ_j e^(iθj)·(w + j)^(−s), j = 0, 1, 2, … for s = 3, 4 and 5. θ is

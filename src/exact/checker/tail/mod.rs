@@ -4,10 +4,10 @@
 //! [`green`](super::green). Out: Σ (−1)^j·X over the crossings j, with a bound on truncation and
 //! rounding errors.
 //!
-//! Crossing j has the coordinate t_j = t + τ·j along the edge and the depth m_j = g·(w + j), where
-//! τ and g are the steps of both from crossing to crossing, and g·w is the depth at the first
-//! crossing. The square wave changes its sign at every crossing. The periodic Euler polynomials are
-//! the Fourier series
+//! Crossing j has the coordinate t_j = t + τ·j along the edge and the depth m_j = g·(w + j). Here τ
+//! and g are the changes of the coordinate and of the depth from one crossing to the next, and g·w
+//! is the depth at the first crossing. The square wave changes its sign at every crossing. The
+//! periodic Euler polynomials are the Fourier series
 //!
 //! A_k(t) = Im (4/π)·Σ_n e^(iπnt)/(n·(iπn)^k) over the odd n.
 //!
@@ -61,9 +61,10 @@ const MAX_DIRECT: f64 = 20_000.0;
 /// Fourier mode. A bound of the remaining crossings or modes is added to the error. Adding 300,000
 /// crossings or modes takes a few milliseconds.
 const MAX_TERMS_ADDED: f64 = 300_000.0;
-/// Fraction of an edge's tolerance that the edge's whole sum must not exceed to be left out. The
-/// sum is then taken as 0, and its upper bound is added to the error. Skipped Fourier modes may use
-/// up the same fraction. The fractions of all kinds of errors must add up to less than 1.
+/// Fraction of an edge's tolerance. If the sum over the edge's crossings is certainly at most this
+/// fraction of the tolerance, the sum is taken as 0, and its upper bound is added to the error.
+/// Skipped Fourier modes may use up the same fraction. The fractions of all kinds of errors must
+/// add up to less than 1.
 const SKIPPED_SHARE: f64 = 0.25;
 /// Fraction of an edge's tolerance that may be used up by leaving out terms of the edge's series
 /// ([`EdgeSeries`]): those that are not summed by Fourier modes. Not critical: with 0.0125 or 0.2,

@@ -1,0 +1,104 @@
+//! The files of a sweep's pictures: their names, and which of them were rendered before.
+
+use std::{
+    io::{BufReader, Read},
+    path::{Path, PathBuf},
+};
+
+use super::{
+    Trouble,
+    input::{self, shown},
+    picture::{FileFormat, PictureOutput},
+    trouble,
+};
+use crate::{
+    files,
+    film::{self, Recipe},
+};
+
+/// Greatest width of a number that a pattern may ask for, as in `%09d`. A sweep has at most 1000
+/// pictures, so more digits would only be zeros.
+const MOST_DIGITS: usize = 9;
+
+/// A path with the number of a picture in it, such as `roll-%03d.png`.
+pub struct FramePattern {
+    before: String,
+    after: String,
+    /// Least number of digits; shorter numbers begin with zeros.
+    digits: usize,
+}
+
+impl FramePattern {
+    /// Parses the argument of `-o`. It has `%d` or, for example, `%03d` once; `%%` in it is a
+    /// percent sign.
+    pub fn of(output: Option<&Path>) -> Result<Self, Trouble> {
+        let named = output.filter(|path| !input::is_standard(path));
+        let parsed = match named.map(|path| (path.to_str(), shown(path))) {
+            None => Err("it takes `-o FILE`".to_owned()),
+            Some((None, shown)) => Err(format!("{shown} is not UTF-8")),
+            Some((Some(text), shown)) => Self::parsed(text)
+                .ok_or_else(|| format!("{shown} has no single place for the number of a picture")),
+        };
+        parsed.map_err(|why| {
+            trouble(format!(
+                "a sweep makes several files, and {why}: write a name such as `-o 'roll-%03d.png'`, in which a number of three digits takes the place of `%03d` (`%d` for as many as it needs, `%%` for a percent sign)"
+            ))
+        })
+    }
+
+    /// Parses a pattern; `None` if it does not have exactly one place for a number.
+    fn parsed(text: &str) -> Option<Self> {
+        let mut parts = vec![String::new()];
+        let mut digits = 0;
+        let mut rest = text;
+        while let Some((before, sign)) = rest.split_once('%') {
+            let part = parts.last_mut()?;
+            *part += before;
+            if let Some(behind) = sign.strip_prefix('%') {
+                part.push('%');
+                rest = behind;
+                continue;
+            }
+            let (width, behind) = sign.split_once('d')?;
+            if !width.is_empty() {
+                digits = width.strip_prefix('0')?.parse().ok()?;
+            }
+            parts.push(String::new());
+            rest = behind;
+        }
+        *parts.last_mut()? += rest;
+        let [before, after] = <[String; 2]>::try_from(parts).ok()?;
+        (digits <= MOST_DIGITS).then_some(Self {
+            before,
+            after,
+            digits,
+        })
+    }
+
+    /// Returns the path of the picture with the index `number`.
+    pub fn path(&self, number: usize) -> PathBuf {
+        let (before, after, digits) = (&self.before, &self.after, self.digits);
+        format!("{before}{number:0digits$}{after}").into()
+    }
+}
+
+/// Returns whether the output's file is a picture of this recipe: a PNG that stores the same scene, overrides
+/// and part, or an EXR file with the recipe's digest and part. Returns `false` if the file cannot be
+/// read.
+pub fn is_rendered(output: &PictureOutput, recipe: &Recipe) -> bool {
+    let stored = || {
+        let PictureOutput::File(path, format, _) = output else {
+            return None;
+        };
+        let file = files::open(path).ok()?;
+        if *format == FileFormat::Exr {
+            let place = film::read_exr_place(BufReader::new(file)).ok()?;
+            return Some(place.crop() == recipe.crop && place.digest == Some(recipe.digest()));
+        }
+        let mut start = Vec::new();
+        let mut file = file.take(input::PICTURE_LIMIT);
+        file.read_to_end(&mut start).ok()?;
+        Some(film::read_recipe(&start).ok()? == *recipe)
+    };
+    stored() == Some(true)
+}

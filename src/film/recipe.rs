@@ -1,0 +1,76 @@
+//! What a picture was made from, and which part of a whole picture it shows. Picture files store it.
+
+use hmac_sha256::Hash;
+
+use crate::area::Area;
+
+/// Maximum length, in bytes, of all texts that a PNG stores about its scene. Longer texts are not
+/// stored, and not read from a PNG, so that a small file cannot be unpacked to a huge one. Usual
+/// scenes are far shorter.
+pub const TEXT_LIMIT: usize = 1 << 20;
+
+/// Maximum number of overrides (`--set` arguments) that a PNG stores. If a picture has more,
+/// nothing about its scene is stored, and a file that contains more is rejected. Users give far
+/// fewer.
+pub const OVERRIDES_LIMIT: usize = 1000;
+
+/// Everything from which a picture was made. A PNG stores it, so that the picture can be rendered
+/// again.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Recipe {
+    /// The text of the scene.
+    pub scene: String,
+    /// The overrides of the scene's values, i.e. the `--set` arguments, in the order given by the
+    /// user.
+    pub overrides: Vec<String>,
+    /// The part of the picture that was rendered; `None` if all of it was rendered.
+    pub crop: Option<Area>,
+    /// Numbers of columns and rows of the whole picture, if only a part was rendered. `None` if all
+    /// of it was rendered, or if they are unknown.
+    pub size: Option<[u32; 2]>,
+}
+
+/// Where a picture lies in a whole one, and from what it was made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// The part's area in the whole picture.
+    pub area: Area,
+    /// Numbers of columns and rows of the whole picture.
+    pub size: [u32; 2],
+    /// Digest of the recipe ([`Recipe::digest`]).
+    pub digest: String,
+}
+
+impl Recipe {
+    /// Returns whether a PNG stores the recipe's texts: their total length and the number of
+    /// overrides must be within the limits.
+    pub fn fits(&self) -> bool {
+        let overrides: usize = self.overrides.iter().map(String::len).sum();
+        self.overrides.len() <= OVERRIDES_LIMIT && self.scene.len() + overrides <= TEXT_LIMIT
+    }
+
+    /// Returns the part of the whole picture that is rendered by this recipe; `None` if all of it
+    /// is, or if the whole picture's size is unknown.
+    pub fn part(&self) -> Option<Part> {
+        Some(Part {
+            area: self.crop?,
+            size: self.size?,
+            digest: self.digest(),
+        })
+    }
+
+    /// Returns a digest of the scene's text, of the overrides, and of Pinhole's version, as 64
+    /// hexadecimal digits. Pictures with equal digests are of the same scene. It is SHA-256 of the
+    /// texts, each after its length in bytes.
+    pub fn digest(&self) -> String {
+        let mut hash = Hash::new();
+        let overrides = self.overrides.iter().map(String::as_str);
+        let texts = [env!("CARGO_PKG_VERSION"), &self.scene].into_iter();
+        for text in texts.chain(overrides) {
+            hash.update((text.len() as u64).to_le_bytes());
+            hash.update(text);
+        }
+        let bytes = hash.finalize();
+        bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}
