@@ -20,7 +20,7 @@ use crate::{
     diagnostic::{visible, visible_line},
     files::{self, Purpose},
     film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Jpeg, Picture, SizesDiffer, Tolerance},
-    grading::{Kind, ObjectVerdict, Reference, Verdict},
+    grading::{self, Kind, ObjectVerdict, Reference, Verdict},
     numbers::{grouped, short, significant},
 };
 
@@ -324,55 +324,21 @@ impl DiffReport {
     }
 
     fn json(&self) -> Value {
-        Value::Object(json(
-            self.names.clone(),
+        let figures = grading::figures(
             self.sizes,
             self.comparison.as_ref().ok(),
             self.tolerance,
             self.verdict.as_ref(),
-        ))
+        );
+        Value::Object(json(self.names.clone(), figures))
     }
 }
 
-/// Returns the fields that describe a comparison in the JSON output. The argument `found` is `None`
-/// if the sizes differ.
-pub fn json(
-    [a, b]: [String; 2],
-    sizes: [[u32; 2]; 2],
-    found: Option<&Comparison>,
-    tolerance: f64,
-    verdict: Option<&Verdict>,
-) -> Map<String, Value> {
-    let largest = found.map(|found| {
-        let largest = found.largest;
-        json!({
-            "error": plain(largest.steps),
-            "x": largest.x,
-            "y": largest.y,
-            "channel": CHANNELS[largest.channel],
-            "a": plain(largest.a),
-            "b": plain(largest.b),
-        })
-    });
-    let beyond = found.map(|found| json!({ "pixels": found.beyond, "share": found.share() }));
-    let figures = [
-        ("a", json!(a)),
-        ("b", json!(b)),
-        ("width", json!(sizes[0][0])),
-        ("height", json!(sizes[0][1])),
-        ("size_b", json!(sizes[1])),
-        ("rmse", json!(found.map(|found| found.rmse))),
-        ("largest", json!(largest)),
-        ("beyond", json!(beyond)),
-        ("undecided", json!(found.map(|found| found.undecided))),
-        ("tolerance", json!(tolerance)),
-        ("equal", json!(found.is_some_and(Comparison::is_equal))),
-    ];
-    let figures = figures.map(|(name, value)| (name.to_owned(), value));
-    figures
-        .into_iter()
-        .chain(verdict.map(Verdict::to_json).unwrap_or_default())
-        .collect()
+/// Returns the fields of the JSON output: the names of A and B, and the `figures` about them.
+pub fn json([a, b]: [String; 2], figures: Map<String, Value>) -> Map<String, Value> {
+    let names = [("a", json!(a)), ("b", json!(b))];
+    let names = names.map(|(name, value)| (name.to_owned(), value));
+    names.into_iter().chain(figures).collect()
 }
 
 /// Writes each mistake and each guess of a verdict. Then writes which objects of the scene are
@@ -471,10 +437,4 @@ fn round(steps: f64) -> String {
     } else {
         short((100.0 * steps).round() / 100.0)
     }
-}
-
-/// Rounds `steps`, a difference in steps of 8-bit sRGB, to 9 decimals. This removes rounding errors
-/// from decoding and encoding a byte.
-fn plain(steps: f64) -> f64 {
-    (1e9 * steps).round() / 1e9
 }

@@ -13,9 +13,9 @@ use super::{Status, Trouble, trouble};
 
 /// Record of Ctrl-C, or of a signal that asks the process to end.
 ///
-/// Ctrl-C ends the process at once, unless a command has called [`watch`](Self::watch) because it
-/// has to clean up first. Even then, pressing Ctrl-C again after [`GRACE`] ends the process.
-#[derive(Clone)]
+/// Ctrl-C ends the process at once, unless a command watches for it because it has to clean up
+/// first. Even then, pressing Ctrl-C again after two seconds ends the process.
+#[derive(Clone, Default)]
 pub struct Interrupt(Arc<Flags>);
 
 #[derive(Default)]
@@ -33,34 +33,37 @@ struct Flags {
 const GRACE: Duration = Duration::from_secs(2);
 
 impl Interrupt {
-    /// Installs a handler that records Ctrl-C.
-    pub fn listen() -> Result<Self, Trouble> {
-        let flags = Arc::new(Flags::default());
-        let interrupt = Self(Arc::clone(&flags));
-        ctrlc::set_handler(move || {
-            flags.pressed.store(true, Ordering::SeqCst);
-            if let Some(then) = flags.then.get() {
-                then();
-            }
-            let again = flags.first.get_or_init(Instant::now).elapsed() > GRACE;
-            if again || !flags.watched.load(Ordering::SeqCst) {
-                process::exit(Status::Interrupted as i32);
-            }
-        })
-        .map_err(|error| trouble(format!("cannot listen for Ctrl-C: {error}")))?;
-        Ok(interrupt)
+    /// Installs a handler that records Ctrl-C. A process can have one only.
+    pub(super) fn listen(&self) -> Result<(), Trouble> {
+        let interrupt = self.clone();
+        ctrlc::set_handler(move || interrupt.press())
+            .map_err(|error| trouble(format!("cannot listen for Ctrl-C: {error}")))
+    }
+
+    /// Records Ctrl-C. Ends the process if no command watches for it, or if this is a further
+    /// Ctrl-C and the command has not ended within two seconds.
+    pub fn press(&self) {
+        let flags = &self.0;
+        flags.pressed.store(true, Ordering::SeqCst);
+        if let Some(then) = flags.then.get() {
+            then();
+        }
+        let again = flags.first.get_or_init(Instant::now).elapsed() > GRACE;
+        if again || !flags.watched.load(Ordering::SeqCst) {
+            process::exit(Status::Interrupted as i32);
+        }
     }
 
     /// Returns the flag that Ctrl-C sets. After this call, the first Ctrl-C only sets the flag, and
     /// the caller must then end the command.
-    pub fn watch(&self) -> &AtomicBool {
+    pub(super) fn watch(&self) -> &AtomicBool {
         self.0.watched.store(true, Ordering::SeqCst);
         &self.0.pressed
     }
 
     /// Registers a function that makes the command end. It is called when Ctrl-C is pressed, or at
     /// once if that has already happened.
-    pub fn then(&self, what: impl Fn() + Send + Sync + 'static) {
+    pub(super) fn then(&self, what: impl Fn() + Send + Sync + 'static) {
         let _ = self.0.then.set(Box::new(what));
         // If Ctrl-C was pressed before the function was registered, the handler did not call it, so
         // it is called now.
@@ -72,13 +75,13 @@ impl Interrupt {
     }
 
     /// Returns whether Ctrl-C was pressed.
-    pub fn pressed(&self) -> bool {
+    pub(super) fn pressed(&self) -> bool {
         self.0.pressed.load(Ordering::SeqCst)
     }
 
     /// Returns [`Trouble::Interrupted`] if Ctrl-C was pressed, since it then caused the error.
     /// Otherwise, returns `trouble`.
-    pub fn or(&self, trouble: Trouble) -> Trouble {
+    pub(super) fn or(&self, trouble: Trouble) -> Trouble {
         if self.pressed() {
             Trouble::Interrupted
         } else {

@@ -51,57 +51,70 @@ use std::{
 
 use clap::Parser;
 
-use self::{
-    args::{Args, Command},
-    interrupt::Interrupt,
-};
+pub use self::interrupt::Interrupt;
+
+use self::args::{Args, Command};
 use crate::{diagnostic::visible_line, render::RenderError, threads};
 
-/// Parses the arguments and runs the command that they name. Returns its exit status.
+/// Runs the program with the arguments of this process. Handles Ctrl-C. Returns the exit status.
 pub fn run() -> ExitCode {
-    let args = match Args::try_parse() {
-        Ok(args) => args,
-        Err(answer) => return print_answer(&visible_answer().unwrap_or(answer)),
+    let interrupt = Interrupt::default();
+    match interrupt.listen() {
+        Ok(()) => run_with(env::args_os(), &interrupt).into(),
+        Err(trouble) => status_of(Err(trouble)).into(),
+    }
+}
+
+/// Parses the arguments, the first of which is the program's name, and runs the command that they
+/// name. Returns its exit status. A host that handles signals itself reports them to `interrupt`.
+pub fn run_with(args: impl IntoIterator<Item = OsString>, interrupt: &Interrupt) -> u8 {
+    let args: Vec<OsString> = args.into_iter().collect();
+    let status = match Args::try_parse_from(&args) {
+        Ok(args) => status_of(command(args.command, interrupt)),
+        Err(answer) => print_answer(&visible_answer(args).unwrap_or(answer)),
     };
-    if let Some(wanted) = args.command.threads() {
+    status as u8
+}
+
+fn command(command: Command, interrupt: &Interrupt) -> Result<Status, Trouble> {
+    if let Some(wanted) = command.threads() {
         threads::limit(wanted);
     }
-    let done = Interrupt::listen().and_then(|interrupt| match args.command {
-        Command::Render(args) => render::run(&args, &interrupt),
-        Command::Check(args) => check::run(&args, &interrupt),
-        Command::New(args) => new::run(&args, &interrupt),
-        Command::Watch(args) => watch::run(&args, &interrupt),
+    match command {
+        Command::Render(args) => render::run(&args, interrupt),
+        Command::Check(args) => check::run(&args, interrupt),
+        Command::New(args) => new::run(&args, interrupt),
+        Command::Watch(args) => watch::run(&args, interrupt),
         Command::Inspect(args) => inspect::run(&args),
         Command::Probe(args) => probe::run(&args),
-        Command::Diff(args) => diff::run(&args, &interrupt),
-        Command::Grade(args) => grade::run(&args, &interrupt),
-        Command::Report(args) => report::run(&args, &interrupt),
-        Command::Merge(args) => merge::run(&args, &interrupt),
-        Command::Sheet(args) => sheet::run(&args, &interrupt),
-        Command::Figure(args) => figure::run(&args, &interrupt),
+        Command::Diff(args) => diff::run(&args, interrupt),
+        Command::Grade(args) => grade::run(&args, interrupt),
+        Command::Report(args) => report::run(&args, interrupt),
+        Command::Merge(args) => merge::run(&args, interrupt),
+        Command::Sheet(args) => sheet::run(&args, interrupt),
+        Command::Figure(args) => figure::run(&args, interrupt),
         Command::Explain(args) => explain::run(&args),
-        Command::Fmt(args) => fmt::run(&args, &interrupt),
+        Command::Fmt(args) => fmt::run(&args, interrupt),
         #[cfg(feature = "lsp")]
         Command::Lsp { .. } => lsp::run(),
         #[cfg(feature = "studio")]
-        Command::Studio(args) => studio::run(&args, &interrupt),
+        Command::Studio(args) => studio::run(&args, interrupt),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man => manual::man(),
-    });
-    status_of(done).into()
+    }
 }
 
 /// Parses the arguments again, after making their control characters visible, and returns clap's
 /// error or help text. This text repeats arguments, and their control characters must not reach the
 /// terminal. Returns `None` if clap accepts the changed arguments.
-fn visible_answer() -> Option<clap::Error> {
+fn visible_answer(args: Vec<OsString>) -> Option<clap::Error> {
     let shown = |argument: OsString| visible_line(&argument.to_string_lossy()).into_owned();
-    Args::try_parse_from(env::args_os().map(shown)).err()
+    Args::try_parse_from(args.into_iter().map(shown)).err()
 }
 
 /// Prints clap's answer: a help text, the version, or an error in the arguments. Returns the exit
 /// status.
-fn print_answer(answer: &clap::Error) -> ExitCode {
+fn print_answer(answer: &clap::Error) -> Status {
     let status = if answer.use_stderr() {
         Status::Trouble
     } else {
@@ -110,9 +123,9 @@ fn print_answer(answer: &clap::Error) -> ExitCode {
     match answer.print() {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             output::error(&format!("cannot write to standard output: {error}"));
-            Status::Trouble.into()
+            Status::Trouble
         }
-        _ => status.into(),
+        _ => status,
     }
 }
 

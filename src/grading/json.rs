@@ -1,8 +1,55 @@
-//! The verdict as JSON, for programs.
+//! A comparison of two pictures and the verdict on one of them as JSON, for programs.
 
 use serde_json::{Map, Value, json};
 
 use super::verdict::{NamedMistake, Verdict};
+use crate::film::{CHANNELS, Comparison};
+
+/// Returns the JSON fields about a comparison of two pictures and, if the second is a scene's exact
+/// picture, about the verdict on the first. `found` is `None` if their sizes differ, and
+/// `tolerance` is in steps of 8-bit sRGB.
+#[doc(hidden)]
+pub fn figures(
+    sizes: [[u32; 2]; 2],
+    found: Option<&Comparison>,
+    tolerance: f64,
+    verdict: Option<&Verdict>,
+) -> Map<String, Value> {
+    let largest = found.map(|found| {
+        let largest = found.largest;
+        json!({
+            "error": plain(largest.steps),
+            "x": largest.x,
+            "y": largest.y,
+            "channel": CHANNELS[largest.channel],
+            "a": plain(largest.a),
+            "b": plain(largest.b),
+        })
+    });
+    let beyond = found.map(|found| json!({ "pixels": found.beyond, "share": found.share() }));
+    let figures = [
+        ("width", json!(sizes[0][0])),
+        ("height", json!(sizes[0][1])),
+        ("size_b", json!(sizes[1])),
+        ("rmse", json!(found.map(|found| found.rmse))),
+        ("largest", json!(largest)),
+        ("beyond", json!(beyond)),
+        ("undecided", json!(found.map(|found| found.undecided))),
+        ("tolerance", json!(tolerance)),
+        ("equal", json!(found.is_some_and(Comparison::is_equal))),
+    ];
+    let figures = figures.map(|(name, value)| (name.to_owned(), value));
+    figures
+        .into_iter()
+        .chain(verdict.map(Verdict::to_json).unwrap_or_default())
+        .collect()
+}
+
+/// Rounds `steps`, a difference in steps of 8-bit sRGB, to 9 decimals. This removes rounding errors
+/// from decoding and encoding a byte.
+fn plain(steps: f64) -> f64 {
+    (1e9 * steps).round() / 1e9
+}
 
 impl Verdict {
     /// Returns the verdict as JSON fields, for programs.

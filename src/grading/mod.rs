@@ -28,6 +28,9 @@ use std::{
     sync::{Arc, Mutex, atomic::AtomicBool},
 };
 
+#[cfg(feature = "json")]
+#[doc(hidden)]
+pub use self::json::figures;
 use self::{
     empty_pixels::without_empty,
     hypotheses::{Candidate, Curve, mistakes},

@@ -58,7 +58,7 @@ use crate::{
     diagnostic::visible_line,
     files::OutputFolder,
     film::{self, Film, Jpeg, Rounding},
-    grading::Reference,
+    grading::{self, Reference},
     render::{Control, RenderError},
     scene::Scene,
 };
@@ -376,13 +376,10 @@ fn grade(
         Ok(pictures) => pictures,
         Err(error) => return Ok(Err(error.to_string())),
     };
-    let mut fields = diff::json(
-        [file.shown.clone(), args.scene.display().to_string()],
-        [[part.width, part.height]; 2],
-        Some(&comparison),
-        steps,
-        Some(&verdict),
-    );
+    let sizes = [[part.width, part.height]; 2];
+    let figures = grading::figures(sizes, Some(&comparison), steps, Some(&verdict));
+    let names = [file.shown.clone(), args.scene.display().to_string()];
+    let mut fields = diff::json(names, figures);
     let is_ours = film::read_recipe(&bytes).is_ok();
     fields.insert("rendered_by_pinhole".to_owned(), json!(is_ours));
     Ok(Ok(JudgedPicture {

@@ -1,0 +1,43 @@
+//! The compiled part of the Python module `pinhole`.
+//!
+//! In: texts, numbers and arrays that the Python part of the module has checked. Out: arrays of
+//! NumPy, and the JSON of the command line, which the Python part makes objects of. Everything that
+//! takes time runs on another thread without the interpreter's lock, and Ctrl-C ends it.
+
+#![forbid(unsafe_code)]
+
+mod background;
+mod picture;
+mod scene;
+
+use std::ffi::OsString;
+
+use pinhole::cli::{self, Interrupt};
+use pyo3::prelude::*;
+
+/// Runs the command-line program with these arguments, the first of which is its name. Returns its
+/// exit status.
+#[pyfunction]
+fn program(py: Python<'_>, args: Vec<OsString>) -> PyResult<u8> {
+    let interrupt = Interrupt::default();
+    let pressed = interrupt.clone();
+    background::run(
+        py,
+        move || cli::run_with(args, &interrupt),
+        // The command ends by itself, after it has cleaned up.
+        move |_| {
+            pressed.press();
+            None
+        },
+    )
+}
+
+/// The compiled part of the module `pinhole`.
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use super::{
+        program,
+        scene::{Scene, carried, read},
+    };
+}

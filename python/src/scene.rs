@@ -1,0 +1,352 @@
+//! A scene that was read, and what can be asked of it.
+
+use std::{
+    io::{self, Cursor},
+    num::NonZero,
+    path::{Path, PathBuf},
+    sync::{Arc, Mutex, PoisonError, atomic::AtomicBool},
+};
+
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use pinhole::{
+    SceneData,
+    area::Area,
+    diagnostic::{Report, Style, to_json},
+    files::{self, Purpose},
+    film::{self, Film, Pixel, Recipe, Rounding},
+    glam::DVec2,
+    grading::{self, Reference},
+    inspect, probe,
+    render::{self, Control, RenderError},
+    sampling::Sampling,
+    scene::{self, Reading},
+    source::{Source, Sources},
+    tracer::World,
+};
+use pyo3::{
+    exceptions::{PyKeyboardInterrupt, PyMemoryError, PyRuntimeError, PyValueError},
+    prelude::*,
+    types::PyBytes,
+};
+use serde_json::Value;
+
+use crate::{
+    background::cancellable,
+    picture::{Pixels, array},
+};
+
+/// Makes an exception of the reason why a render gives no picture.
+fn not_rendered(error: RenderError) -> PyErr {
+    let message = error.to_string();
+    match error {
+        RenderError::TooLarge(_) => PyMemoryError::new_err(message),
+        RenderError::Outside { .. } => PyValueError::new_err(message),
+        RenderError::Cancelled => PyKeyboardInterrupt::new_err(()),
+        _ => PyRuntimeError::new_err(message),
+    }
+}
+
+fn not_written(path: &Path, error: io::Error) -> PyErr {
+    let message = format!("cannot write to {}: {error}", path.display());
+    io::Error::new(error.kind(), message).into()
+}
+
+/// Returns the text and the settings of the scene that a PNG carries, or `None` if the bytes are no
+/// PNG.
+#[pyfunction]
+pub fn carried(bytes: &[u8]) -> PyResult<Option<(String, Vec<String>)>> {
+    if !bytes.starts_with(&film::SIGNATURE) {
+        return Ok(None);
+    }
+    let recipe =
+        film::read_recipe(bytes).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    Ok(Some((recipe.scene, recipe.overrides)))
+}
+
+/// Reads a scene from the bytes of its text and from settings in the form of `--set`. Returns the
+/// scene, unless it has errors, and its problems: as a JSON array, and as a report for people.
+#[pyfunction]
+pub fn read(
+    py: Python<'_>,
+    name: String,
+    text: Vec<u8>,
+    settings: Vec<String>,
+) -> PyResult<(Option<Scene>, String, String)> {
+    cancellable(py, move |cancel| {
+        let sources = Sources::new(Source::from_bytes(name, text)).with_sets(settings);
+        let Reading {
+            scene, diagnostics, ..
+        } = scene::read_unless(&sources, cancel).map_err(|_| PyKeyboardInterrupt::new_err(()))?;
+        let problems: Vec<Value> = diagnostics.iter().map(|it| to_json(it, &sources)).collect();
+        let report = Report::new(&sources, Style::default()).human(&diagnostics);
+        let scene = scene.map(|data| Scene(Arc::new(Inner::new(sources, data))));
+        Ok((scene, Value::from(problems).to_string(), report))
+    })?
+}
+
+/// A scene without errors. It never changes, so that threads can share it.
+#[pyclass(frozen)]
+pub struct Scene(Arc<Inner>);
+
+struct Inner {
+    sources: Sources,
+    data: SceneData,
+    /// The prepared scene, once something was rendered.
+    world: Mutex<Option<Arc<World>>>,
+    /// The exact picture with which the last picture was compared.
+    reference: Mutex<Option<Arc<Reference>>>,
+}
+
+type Crop = Option<[u32; 4]>;
+type Threads = Option<NonZero<usize>>;
+
+#[pymethods]
+impl Scene {
+    /// Width and height of the picture, in pixels.
+    #[getter]
+    fn size(&self) -> (u32, u32) {
+        let image = &self.0.data.image;
+        (image.width, image.height)
+    }
+
+    fn render<'py>(
+        &self,
+        py: Python<'py>,
+        crop: Crop,
+        threads: Threads,
+    ) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        array(py, self.film(py, crop, threads)?)
+    }
+
+    fn render_linear<'py>(
+        &self,
+        py: Python<'py>,
+        crop: Crop,
+        threads: Threads,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        array(py, self.film(py, crop, threads)?)
+    }
+
+    #[expect(
+        clippy::type_complexity,
+        reason = "an array of means, and one of bounds"
+    )]
+    fn render_exact<'py>(
+        &self,
+        py: Python<'py>,
+        crop: Crop,
+        threads: Threads,
+    ) -> PyResult<(Bound<'py, PyArray3<f64>>, Bound<'py, PyArray2<f32>>)> {
+        let exact = self.run(py, move |inner, cancel| {
+            let control = control(threads, cancel);
+            let world = inner.world(cancel)?;
+            render::render_exact(&world, inner.part(crop), &control).map_err(not_rendered)
+        })?;
+        let shape = [exact.film.height() as usize, exact.film.width() as usize];
+        let bounds = PyArray1::from_vec(py, exact.bounds).reshape(shape)?;
+        Ok((array(py, exact.film)?, bounds))
+    }
+
+    /// Returns the bytes of the picture's PNG.
+    fn png(&self, py: Python<'_>, crop: Crop, threads: Threads) -> PyResult<Py<PyBytes>> {
+        let bytes = self.run(py, move |inner, cancel| {
+            let film: Film<[u8; 3]> = inner.film(crop, threads, cancel)?;
+            let mut bytes = Cursor::new(Vec::new());
+            film::write_png(&film, Some(&inner.recipe(crop)), &mut bytes)?;
+            Ok(bytes.into_inner())
+        })?;
+        Ok(PyBytes::new(py, &bytes).unbind())
+    }
+
+    /// Writes the picture to a PNG file. Returns whether the file carries the scene.
+    fn save_png(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        crop: Crop,
+        threads: Threads,
+    ) -> PyResult<bool> {
+        self.run(py, move |inner, cancel| {
+            let film: Film<[u8; 3]> = inner.film(crop, threads, cancel)?;
+            let recipe = inner.recipe(crop);
+            files::write(&path, Purpose::Named, cancel, |out| {
+                film::write_png(&film, Some(&recipe), out)
+            })
+            .map_err(|error| not_written(&path, error))?;
+            Ok(recipe.fits())
+        })
+    }
+
+    /// Writes the picture to an OpenEXR file.
+    fn save_exr(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        crop: Crop,
+        threads: Threads,
+    ) -> PyResult<()> {
+        self.run(py, move |inner, cancel| {
+            let film: Film<[f32; 3]> = inner.film(crop, threads, cancel)?;
+            let digest = inner.recipe(crop).digest();
+            files::write(&path, Purpose::Named, cancel, |out| {
+                film::write_exr(&film, inner.part(crop), inner.whole(), Some(&digest), out)
+            })
+            .map_err(|error| not_written(&path, error))
+        })
+    }
+
+    fn inspect(&self, py: Python<'_>) -> PyResult<String> {
+        self.run(py, |inner, _| {
+            let mut json = Vec::new();
+            inspect::inspect(&inner.data, &inner.sources.file)
+                .write_json(&mut json)
+                .and_then(|()| String::from_utf8(json).map_err(io::Error::other))
+                .map_err(Into::into)
+        })
+    }
+
+    fn probe(&self, py: Python<'_>, x: f64, y: f64) -> PyResult<String> {
+        self.run(py, move |inner, _| {
+            Ok(probe::probe(&inner.data, DVec2::new(x, y))
+                .to_json()
+                .to_string())
+        })
+    }
+
+    /// Judges a picture of another program. The part of the scene that it shows must have its size.
+    fn grade(&self, py: Python<'_>, picture: Pixels<'_>, crop: Crop) -> PyResult<String> {
+        let numbers = picture.copied()?;
+        self.run(py, move |inner, cancel| {
+            let part = inner.part(crop);
+            let picture = numbers.picture(part)?;
+            let rounding = picture.rounding;
+            let reference = inner.reference(part, rounding, cancel)?;
+            let comparison = reference
+                .compare(&picture.film, rounding.steps())
+                .map_err(|error| PyValueError::new_err(error.to_string()))?;
+            let verdict = reference
+                .judge(&picture, None, &comparison, cancel)
+                .map_err(not_rendered)?;
+            let sizes = [[part.width, part.height]; 2];
+            let steps = rounding.steps();
+            let figures = grading::figures(sizes, Some(&comparison), steps, Some(&verdict));
+            Ok(Value::Object(figures).to_string())
+        })
+    }
+}
+
+impl Scene {
+    fn run<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&Inner, &AtomicBool) -> PyResult<T> + Send + 'static,
+    ) -> PyResult<T> {
+        let inner = Arc::clone(&self.0);
+        cancellable(py, move |cancel| work(&inner, cancel))?
+    }
+
+    fn film<P: Pixel + 'static>(
+        &self,
+        py: Python<'_>,
+        crop: Crop,
+        threads: Threads,
+    ) -> PyResult<Film<P>> {
+        self.run(py, move |inner, cancel| inner.film(crop, threads, cancel))
+    }
+}
+
+impl Inner {
+    fn new(sources: Sources, data: SceneData) -> Self {
+        Self {
+            sources,
+            data,
+            world: Mutex::default(),
+            reference: Mutex::default(),
+        }
+    }
+
+    fn whole(&self) -> Area {
+        Area::whole(self.data.image.width, self.data.image.height)
+    }
+
+    fn part(&self, crop: Crop) -> Area {
+        crop.map_or(self.whole(), |[x, y, width, height]| Area {
+            x,
+            y,
+            width,
+            height,
+        })
+    }
+
+    fn recipe(&self, crop: Crop) -> Recipe {
+        let sets = self.sources.sets.iter();
+        Recipe {
+            scene: self.sources.file.text().to_owned(),
+            overrides: sets.map(|set| set.text().to_owned()).collect(),
+            crop: crop.map(|_| self.part(crop)),
+            size: crop.map(|_| [self.whole().width, self.whole().height]),
+        }
+    }
+
+    fn film<P: Pixel>(
+        &self,
+        crop: Crop,
+        threads: Threads,
+        cancel: &AtomicBool,
+    ) -> PyResult<Film<P>> {
+        let whole = self.whole();
+        let sampling = Sampling::new(&self.data.sampler, whole.width, whole.height);
+        let world = self.world(cancel)?;
+        let control = control(threads, cancel);
+        let rendered = render::render_as_asked(&world, &sampling, self.part(crop), &control)
+            .map_err(not_rendered)?;
+        Ok(rendered.into_film())
+    }
+
+    fn world(&self, cancel: &AtomicBool) -> PyResult<Arc<World>> {
+        cached(
+            &self.world,
+            |_| true,
+            || World::new_unless(&self.data, cancel).map_err(RenderError::from),
+        )
+    }
+
+    fn reference(
+        &self,
+        part: Area,
+        rounding: Rounding,
+        cancel: &AtomicBool,
+    ) -> PyResult<Arc<Reference>> {
+        cached(
+            &self.reference,
+            |found| found.is_for(part, rounding),
+            || Reference::new(&self.data, part, rounding, &control(None, cancel)),
+        )
+    }
+}
+
+fn control<'a>(threads: Threads, cancel: &'a AtomicBool) -> Control<'a> {
+    Control {
+        threads,
+        cancel,
+        ..Control::default()
+    }
+}
+
+/// Returns the cached value if it is suitable, and otherwise makes it. Nobody holds the lock while
+/// a value is made: two threads may make the same one, but a process that is forked meanwhile finds
+/// the lock free.
+fn cached<T>(
+    cache: &Mutex<Option<Arc<T>>>,
+    is_suitable: impl Fn(&T) -> bool,
+    make: impl FnOnce() -> Result<T, RenderError>,
+) -> PyResult<Arc<T>> {
+    let lock = || cache.lock().unwrap_or_else(PoisonError::into_inner);
+    let found = lock().clone().filter(|found| is_suitable(found));
+    if let Some(found) = found {
+        return Ok(found);
+    }
+    let made = Arc::new(make().map_err(not_rendered)?);
+    *lock() = Some(Arc::clone(&made));
+    Ok(made)
+}

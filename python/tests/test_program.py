@@ -1,0 +1,58 @@
+"""The program that the wheel installs."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import sysconfig
+import time
+from pathlib import Path
+
+from conftest import Program
+
+
+def test_exit_statuses_are_those_of_the_program(program: Program, tmp_path: Path) -> None:
+    (tmp_path / "bad.scn").write_text("sphere { radius -1 }")
+    assert program("--version").stdout.startswith(b"pinhole ")
+    assert program("check", "a.scn").returncode == 0
+    assert program("check", "bad.scn").returncode == 1
+    assert program("render").returncode == 2
+    unknown = program("\x1b[31m")
+    assert unknown.returncode == 2 and b"\x1b" not in unknown.stderr and b"u{1b}" in unknown.stderr
+
+
+def test_it_runs_as_a_module(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "pinhole"]
+    said = subprocess.run([*command, "--help"], capture_output=True, text=True, check=True)
+    assert "Usage: pinhole <COMMAND>" in said.stdout
+    subprocess.run([*command, "new", "a.scn"], cwd=tmp_path, check=True)
+    assert (tmp_path / "a.scn").read_text().startswith("camera {")
+
+
+def test_it_starts_without_numpy() -> None:
+    script = "import pinhole.__main__, sys; print('numpy' in sys.modules)"
+    said = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
+    assert said.stdout == "False\n"
+
+
+def test_ctrl_c_and_termination_leave_no_file(program: Program, tmp_path: Path) -> None:
+    path = Path(sysconfig.get_path("scripts")) / "pinhole"
+    sets = ["--set", "image.width=3000", "--set", "sampler.per_pixel=4096"]
+    for number in (signal.SIGINT, signal.SIGTERM):
+        render = subprocess.Popen([path, "render", "a.scn", "-o", "a.png", *sets], cwd=tmp_path)
+        time.sleep(1)
+        assert render.poll() is None
+        render.send_signal(number)
+        assert render.wait(timeout=10) == 130
+    assert [path.name for path in tmp_path.iterdir()] == ["a.scn"]
+
+
+def test_ctrl_c_ends_a_command_that_waits(program: Program) -> None:
+    path = Path(sysconfig.get_path("scripts")) / "pinhole"
+    with subprocess.Popen([path, "check", "-"], stdin=subprocess.PIPE) as check:
+        time.sleep(1)
+        check.send_signal(signal.SIGINT)
+        assert check.wait(timeout=10) == 130
