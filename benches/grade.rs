@@ -18,6 +18,7 @@ mod hits;
 mod mistakes;
 #[path = "../tests/integration/grade/scenes.rs"]
 mod scenes;
+#[allow(dead_code, reason = "one of the samplings is for a test alone")]
 #[path = "../tests/integration/grade/textbook.rs"]
 mod textbook;
 
