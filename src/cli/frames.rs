@@ -82,9 +82,9 @@ impl FramePattern {
     }
 }
 
-/// Returns whether the output's file is a picture of this recipe: a PNG that stores the same scene, overrides
-/// and part, or an EXR file with the recipe's digest and part. Returns `false` if the file cannot be
-/// read.
+/// Returns whether the output's file is a picture of this recipe: a PNG that stores the same scene,
+/// overrides and part, or an EXR file with the recipe's digest and part. Returns `false` if the
+/// file cannot be read.
 pub fn is_rendered(output: &PictureOutput, recipe: &Recipe) -> bool {
     let stored = || {
         let PictureOutput::File(path, format, _) = output else {

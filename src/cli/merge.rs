@@ -241,8 +241,8 @@ fn gap(parts: &[PartFile], whole: Area) -> Option<Area> {
 /// Opens the rows of a file, which has the given width in pixels.
 type OpenRows<P> = fn(BufReader<File>, u32) -> io::Result<FileRows<P>>;
 
-/// The rows of the whole picture, read from the files of its parts. A part's file is open only while
-/// its rows are read.
+/// The rows of the whole picture, read from the files of its parts. A part's file is open only
+/// while its rows are read.
 struct MergedRows<'a, P> {
     parts: &'a [PartFile],
     whole: Area,

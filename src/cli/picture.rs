@@ -28,8 +28,8 @@ use crate::{
 /// band's end.
 const BAND_PIXELS: u32 = 1 << 22;
 
-/// Number of pixels above which a picture must fit into memory, although it is rendered in bands. It
-/// is that of a poster with sides of 2^18 pixels, which takes hours to render. More pixels are
+/// Number of pixels above which a picture must fit into memory, although it is rendered in bands.
+/// It is that of a poster with sides of 2^18 pixels, which takes hours to render. More pixels are
 /// probably a mistyped size.
 const MISTYPED: u64 = 1 << 36;
 
@@ -58,8 +58,8 @@ pub fn render_part<P: film::Pixel>(
     })
 }
 
-/// Runs `work`, which renders the area `part` of a scene's picture. Shows a progress bar if standard
-/// error is a terminal.
+/// Runs `work`, which renders the area `part` of a scene's picture. Shows a progress bar if
+/// standard error is a terminal.
 fn with_progress<T>(
     scene: &Scene,
     part: Area,

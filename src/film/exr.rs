@@ -28,8 +28,8 @@ use crate::{area::Area, files::Sink};
 pub(super) const DIGEST: &str = "pinhole:digest";
 
 /// Writes `film` as an OpenEXR file. The film shows the area `part` of a picture with the area
-/// `whole`. Both are equal if the picture was not cropped. `digest` is that of the picture's recipe,
-/// if it is known.
+/// `whole`. Both are equal if the picture was not cropped. `digest` is that of the picture's
+/// recipe, if it is known.
 ///
 /// # Errors
 ///

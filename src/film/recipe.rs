@@ -1,4 +1,5 @@
-//! What a picture was made from, and which part of a whole picture it shows. Picture files store it.
+//! What a picture was made from, and which part of a whole picture it shows. Picture files store
+//! it.
 
 use hmac_sha256::Hash;
 

@@ -207,8 +207,9 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     }
 }
 
-/// Returns whether a hypothesis has only wrong numbers that hardly move anything in the picture. Nobody
-/// types such numbers; they more likely imitate samples that lie beside the middle of their pixels.
+/// Returns whether a hypothesis has only wrong numbers that hardly move anything in the picture.
+/// Nobody types such numbers; they more likely imitate samples that lie beside the middle of their
+/// pixels.
 fn is_slight(scene: &Scene, candidate: &Candidate) -> bool {
     let is_place = |mistake: &Mistake| match mistake {
         Mistake::Numbers(parameter, _) => !parameter.is_color(),

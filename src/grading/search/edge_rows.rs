@@ -64,9 +64,9 @@ const MUCH_WRONG: usize = 50;
 /// a shift of more than a pixel, the difference is relative to the shift.
 const MAX_SHIFT_ERROR: f64 = 0.5;
 
-/// Limit of a shift of all samples, in pixels, below which it need not be one of the table. The mean
-/// of four random samples, if they are the same in all pixels, lies within it with a probability of
-/// more than 95 % for each direction.
+/// Limit of a shift of all samples, in pixels, below which it need not be one of the table. The
+/// mean of four random samples, if they are the same in all pixels, lies within it with a
+/// probability of more than 95 % for each direction.
 const MAX_SLIGHT_SHIFT: f64 = 0.35;
 
 /// Maximum number of mistakes that are tried to explain a shift of all edges, those with the most
