@@ -10,7 +10,9 @@ use super::{
     Trouble,
     args::{LargeArgs, Overrides},
     interrupt::Interrupt,
-    output, trouble,
+    output,
+    sweep::{Sweep, SweepStep},
+    trouble,
 };
 use crate::{
     area::Area,
@@ -168,6 +170,24 @@ impl SceneInput {
             output::to_people(&self.report(&reading));
         }
         reading.scene.ok_or(Trouble::SceneErrors)
+    }
+
+    /// Returns the scenes of a sweep. Prints the problems of the first scene, and the errors of the
+    /// last one.
+    pub fn steps(&self, sweep: &Sweep) -> Result<Vec<SweepStep>, Trouble> {
+        let [first, last] = sweep.ends().map(|set| self.with_set(&set));
+        // The later scenes mostly have the same warnings as the first one.
+        first.scene()?;
+        last.scene_without_warnings()?;
+        sweep.steps(&self.sources)
+    }
+
+    /// Returns the input with one more `--set` argument, which is that of a sweep.
+    pub fn with_set(&self, set: &str) -> Self {
+        let mut sources = self.sources.clone();
+        let name = format!("{}, --sweep", sources.file.name());
+        sources.sets.push(Source::from_text(name, set));
+        Self { sources, ..*self }
     }
 
     /// Returns the report about the scene's problems as readable text.

@@ -108,8 +108,8 @@ fn render_sweep(
         Ok(output)
     });
     let outputs: Vec<PictureOutput> = outputs.collect::<Result<_, Trouble>>()?;
-    for (step, output) in sweep.steps(&input)?.into_iter().zip(outputs) {
-        let input = step.of(&input);
+    for (step, output) in input.steps(sweep)?.into_iter().zip(outputs) {
+        let input = input.with_set(&step.set);
         let scene = input.scene_without_warnings()?;
         let whole = Area::whole(scene.image.width, scene.image.height);
         let recipe = input.recipe(crop(args, &input, whole)?, whole);

@@ -104,8 +104,8 @@ fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Vec<(Scene, String)>, Trou
         return Ok(vec![(input.scene()?, name(path, args))]);
     };
     let mut scenes = Vec::new();
-    for step in sweep.steps(&input)? {
-        let scene = step.of(&input).scene_without_warnings()?;
+    for step in input.steps(sweep)? {
+        let scene = input.with_set(&step.set).scene_without_warnings()?;
         let name = match args.scenes.len() {
             1 => step.label,
             _ => format!("{} {}", name(path, args), step.label),

@@ -3,7 +3,7 @@
 
 use std::str::FromStr;
 
-use super::{Trouble, input::SceneInput, trouble};
+use super::{Trouble, trouble};
 use crate::{
     numbers::{short, short_vector},
     scene::analyze,
@@ -79,44 +79,26 @@ fn ends(values: &str) -> Option<(&str, &str)> {
     Some((&values[..at], &values[at + 2..]))
 }
 
-impl SweepStep {
-    /// Returns the scene of this step. `input` is the scene that the sweep started from.
-    pub fn of(&self, input: &SceneInput) -> SceneInput {
-        let mut sources = input.sources.clone();
-        let name = format!("{}, --sweep", sources.file.name());
-        sources.sets.push(Source::from_text(name, &self.set));
-        SceneInput { sources, ..*input }
-    }
-}
-
 impl Sweep {
     /// Returns the number of scenes.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Returns the scenes of the sweep. Prints the problems of the first scene, and the errors of
-    /// the last one.
+    /// Returns the `--set` arguments of the first and the last scene, with the values as the user
+    /// typed them.
+    pub fn ends(&self) -> [String; 2] {
+        [&self.from, &self.to].map(|value| format!("{}={value}", self.target))
+    }
+
+    /// Returns the scenes of the sweep. Their values are computed by the scene language: a `let` for
+    /// each is added to the end of the scene's text.
     ///
     /// # Errors
     ///
-    /// The first or the last scene has errors. Or there is nothing between the first and the last
-    /// value, for example because they are words or colours.
-    pub fn steps(&self, input: &SceneInput) -> Result<Vec<SweepStep>, Trouble> {
-        // The values are those that the user typed, so that reports show them.
-        let [first, last] = [&self.from, &self.to].map(|value| SweepStep {
-            set: format!("{}={value}", self.target),
-            label: String::new(),
-        });
-        // The later scenes mostly have the same warnings as the first one.
-        first.of(input).scene()?;
-        last.of(input).scene_without_warnings()?;
-        self.values(&input.sources)
-    }
-
-    /// Computes the values of the sweep by the scene language: a `let` for each is added to the end
-    /// of the scene's text.
-    fn values(&self, sources: &Sources) -> Result<Vec<SweepStep>, Trouble> {
+    /// There is nothing between the first and the last value, for example because they are words or
+    /// colours.
+    pub fn steps(&self, sources: &Sources) -> Result<Vec<SweepStep>, Trouble> {
         let Self {
             from, to, count, ..
         } = self;
