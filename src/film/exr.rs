@@ -25,7 +25,7 @@ use crate::{area::Area, files::Sink};
 /// Name of the attribute with the digest of a picture's recipe ([`Recipe::digest`]).
 ///
 /// [`Recipe::digest`]: super::Recipe::digest
-pub(super) const DIGEST: &str = "pinhole:digest";
+const DIGEST: &str = "pinhole:digest";
 
 /// Writes `film` as an OpenEXR file. The film shows the area `part` of a picture with the area
 /// `whole`. Both are equal if the picture was not cropped. `digest` is that of the picture's
@@ -41,7 +41,7 @@ pub fn write_exr<P: AsFloats>(
     digest: Option<&str>,
     out: &mut dyn Sink,
 ) -> io::Result<()> {
-    if film.height() != part.height {
+    if film.height() != part.height || !part.lies_in(whole) {
         return Err(other_size(film, part));
     }
     write_exr_bands(part, whole, digest, out, [Ok(film)])
@@ -204,4 +204,12 @@ fn other_size<P: AsFloats>(film: &Film<P>, part: Area) -> io::Error {
     let (width, height) = (film.width(), film.height());
     let message = format!("a film of {width} × {height} pixels is not the part {part}");
     io::Error::new(io::ErrorKind::InvalidInput, message)
+}
+
+/// Returns the digest that a file's header stores; `None` if another program wrote the file.
+pub(super) fn stored_digest(own: &LayerAttributes) -> Option<String> {
+    match own.other.get(&Text::from(DIGEST))? {
+        AttributeValue::Text(digest) => Some(digest.to_string()),
+        _ => None,
+    }
 }

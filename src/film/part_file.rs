@@ -14,13 +14,13 @@ use exr::{
     error::Error,
     math::Vec2,
     meta::{
-        attribute::{AttributeValue, ChannelList, SampleType, Text},
+        attribute::{ChannelList, SampleType},
         header::Header,
     },
 };
 use png::{BitDepth, ColorType, Decoder};
 
-use super::exr::DIGEST;
+use super::exr::stored_digest;
 use crate::area::Area;
 
 /// Rows of a picture, from the top.
@@ -68,11 +68,7 @@ fn place(headers: &[Header]) -> io::Result<ExrPlace> {
         ..Area::whole(width as u32, height as u32)
     };
     let size = [window.size.0 as u32, window.size.1 as u32];
-    let digest = header.own_attributes.other.get(&Text::from(DIGEST));
-    let digest = digest.and_then(|digest| match digest {
-        AttributeValue::Text(digest) => Some(digest.to_string()),
-        _ => None,
-    });
+    let digest = stored_digest(&header.own_attributes);
     Ok(ExrPlace { area, size, digest })
 }
 

@@ -17,6 +17,8 @@ pub struct Picture {
     pub crop: Option<Area>,
     /// Opacity of the pixels; `None` if all are opaque.
     pub opacity: Option<Opacity>,
+    /// Digest of the scene and its overrides, from an EXR file that Pinhole wrote. Otherwise `None`.
+    pub digest: Option<String>,
 }
 
 impl Picture {
@@ -28,6 +30,7 @@ impl Picture {
             coding: Coding::Exact,
             crop: None,
             opacity: None,
+            digest: None,
         }
     }
 }

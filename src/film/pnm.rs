@@ -167,6 +167,7 @@ fn read_bytes(bytes: &[u8], limit: u64, coding: Coding) -> Result<Picture, Unrea
         };
     }
     Ok(Picture {
+        digest: None,
         film,
         rounding,
         coding: mended.unwrap_or(coding),

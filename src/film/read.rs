@@ -137,6 +137,7 @@ fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unread
         format => format == ImageFormat::Jpeg,
     };
     Ok(Picture {
+        digest: None,
         film,
         rounding,
         coding: match format {
@@ -196,6 +197,7 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let pixels = (0..count).map(|index| places.map(|place| word(channels * index + place)));
     let opacity = mix(&mut film, pixels, |word| light[usize::from(word)], part)?;
     Ok(Picture {
+        digest: None,
         film,
         rounding,
         coding: if says_other_curve(reader.info()) {

@@ -17,6 +17,7 @@ use exr::{
 };
 
 use super::{
+    exr::stored_digest,
     memory::TooLarge,
     picture::{Coding, Picture, Rounding},
     pixels::Film,
@@ -79,6 +80,7 @@ pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     };
     let is_half = |channel: &ChannelDescription| channel.sample_type == SampleType::F16;
     Ok(Picture {
+        digest: stored_digest(&image.layer_data.attributes),
         film,
         rounding: if [red, green, blue].iter().any(is_half) {
             Rounding::Half

@@ -38,7 +38,8 @@ impl Picture {
             #[cfg(feature = "exr")]
             Some("exr") => files::write(path, Purpose::Named, &cancel::NEVER, |out| {
                 let whole = crate::area::Area::whole(self.width(), self.height());
-                let digest = self.recipe().map(|recipe| recipe.digest());
+                let own = self.recipe().map(|recipe| recipe.digest());
+                let digest = own.or_else(|| self.coded.digest.clone());
                 film::write_exr(self.film(), whole, whole, digest.as_deref(), out)
             }),
             _ => {

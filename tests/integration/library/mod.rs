@@ -144,12 +144,9 @@ fn saved_pictures_have_the_bytes_that_the_program_writes() {
             let read = Picture::open(&path).unwrap();
             assert!(read.rmse(&picture).unwrap() < 0.01);
             assert_eq!(read.to_rgb8(), picture.to_rgb8());
-            // A picture that was read from a file can be saved again. A PNG has its scene, too.
+            // A picture that was read from a file can be saved again, together with its scene.
             read.save(&path).unwrap();
-            let again = Picture::open(&path).unwrap();
-            assert_eq!(again.pixels(), read.pixels());
-            let is_same = fs::read(&path).unwrap() == program;
-            assert!(is_same || ending == "exr", "{method}");
+            assert!(fs::read(&path).unwrap() == program, "{method} {ending}");
         }
     }
 }

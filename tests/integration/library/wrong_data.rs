@@ -135,9 +135,7 @@ fn films_of_different_sizes_are_not_compared_or_written_as_parts() {
     ] {
         let mut file = Cursor::new(Vec::new());
         let error = write_exr(&a, part, whole, None, &mut file).unwrap_err();
-        let about = error.to_string();
-        let is_told = about.contains("4 × 2 pixels") || about.contains("does not lie in");
-        assert!(is_told, "{error}");
+        assert!(error.to_string().contains("4 × 2 pixels"), "{error}");
         assert!(file.into_inner().is_empty());
     }
     assert_eq!(a.into_pixels().len(), 8);
