@@ -181,8 +181,8 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     if !is_explained || mistakes.iter().any(explains) {
         mistakes.retain(explains);
     }
-    let is_named =
-        !mistakes.is_empty() && is_explained && !is_made_up(last) && !is_slight(scene, last);
+    let is_certain = is_explained && !is_made_up(last) && !is_slight(scene, last, &mistakes);
+    let is_named = is_certain && !mistakes.is_empty();
     let (kind, mistakes, guesses) = if is_named {
         (Kind::Wrong, mistakes, Vec::new())
     } else if is_explained && mistakes.is_empty() {
@@ -207,16 +207,20 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     }
 }
 
-/// Returns whether a hypothesis has only wrong numbers that hardly move anything in the picture.
-/// Nobody types such numbers; they more likely imitate samples that lie beside the middle of their
-/// pixels.
-fn is_slight(scene: &Scene, candidate: &Candidate) -> bool {
+/// Returns whether all mistakes that would be named are wrong numbers that hardly move anything in
+/// the picture. Nobody types such numbers; they more likely imitate samples that lie beside the
+/// middle of their pixels. `named` has those of the hypothesis's mistakes that explain anything.
+fn is_slight(scene: &Scene, candidate: &Candidate, named: &[NamedMistake]) -> bool {
+    let is_named = |mistake: &&Mistake| {
+        let mut named = named.iter();
+        named.any(|one| (one.id, one.object) == (mistake.id(), mistake.object()))
+    };
     let is_place = |mistake: &Mistake| match mistake {
         Mistake::Numbers(parameter, _) => !parameter.is_color(),
         _ => false,
     };
     let mut objects = 0..scene.objects.len();
-    candidate.mistakes.iter().all(is_place)
+    candidate.mistakes.iter().filter(is_named).all(is_place)
         && objects.all(|object| objects::off(scene, &candidate.scene, object) < SLIGHT)
 }
 
