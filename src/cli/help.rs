@@ -96,7 +96,7 @@ undecided are null. With a scene also verdict (right, noise, wrong, or unknown: 
 verdict in words), samples_per_pixel (independent ones that make as much noise), mistakes [{id, message, help, set, explains}] \
 (explains is the share of the squared difference beyond noise, 0 to 1; together they explain the picture), guesses (the same of an \
 unknown verdict: what comes nearest), rest (the share that mistakes or guesses leave, if that is more than noise), objects [{index, \
-name, right, off}] (off in pixels), limited (whether the search came to its bound before all mistakes were tried: --effort N \
+name, right, off}] (off in pixels), limited (whether the search stopped at its limit before all mistakes were tried: --effort N \
 multiplies that).
 
 Exit status: 0 for pictures within the tolerance, and for one that is right, but for noise; 1 if not, or the scene has errors; \

@@ -29,6 +29,10 @@ const MADE_UP: usize = 3;
 /// distance of the mean of four random samples, shared by all pixels, from a pixel's middle.
 const SLIGHT: f64 = 0.4;
 
+/// Fraction of the picture's squared error above which guesses are left out if they leave it
+/// unexplained. They are then about pictures of another scene, and help nobody.
+const USELESS_REST: f64 = 0.5;
+
 /// Place in a row's message for a factor of light, which is estimated from the picture.
 const GAIN: &str = "{gain}";
 
@@ -176,7 +180,7 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     };
     let correct = Candidate::correct(scene);
     let rest = (!is_explained).then(|| square(last) / square(&correct));
-    let rest = rest.filter(|rest| *rest > 0.0).map(|rest| rest.min(1.0));
+    let mut rest = rest.filter(|rest| *rest > 0.0).map(|rest| rest.min(1.0));
     let explains = |mistake: &NamedMistake| mistake.explains >= NOTHING;
     if !is_explained || mistakes.iter().any(explains) {
         mistakes.retain(explains);
@@ -187,6 +191,9 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
         (Kind::Wrong, mistakes, Vec::new())
     } else if is_explained && mistakes.is_empty() {
         (Kind::Noise, mistakes, Vec::new())
+    } else if rest.is_some_and(|rest| rest > USELESS_REST) {
+        rest = None;
+        (Kind::Unknown, Vec::new(), Vec::new())
     } else {
         (Kind::Unknown, Vec::new(), mistakes)
     };
@@ -215,8 +222,11 @@ fn is_slight(scene: &Scene, candidate: &Candidate, named: &[NamedMistake]) -> bo
         let mut named = named.iter();
         named.any(|one| (one.id, one.object) == (mistake.id(), mistake.object()))
     };
+    // Near and far planes move nothing, and what they cut off is no small thing.
     let is_place = |mistake: &Mistake| match mistake {
-        Mistake::Numbers(parameter, _) => !parameter.is_color(),
+        Mistake::Numbers(parameter, _) => {
+            !parameter.is_color() && !matches!(parameter.fields[..], ["near" | "far"])
+        }
         _ => false,
     };
     let mut objects = 0..scene.objects.len();

@@ -3,7 +3,10 @@
 use std::fmt;
 
 use super::objects::{self, ObjectVerdict};
-use crate::{numbers::short, scene::Scene};
+use crate::{
+    numbers::{short, significant},
+    scene::Scene,
+};
 
 /// The result of judging a picture, in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,12 +114,7 @@ impl Verdict {
         match (self.kind, self.samples) {
             (Kind::Right, _) => "right: equal to the exact picture".to_owned(),
             (Kind::Noise, Some(samples)) => {
-                let count = if samples < 9.5 {
-                    (2.0 * samples).round() / 2.0
-                } else {
-                    samples.round()
-                };
-                let count = short(count);
+                let count = about(samples);
                 format!("right but for sampling noise: about {count} random samples per pixel")
             }
             (Kind::Noise, None) if self.is_coded => {
@@ -133,7 +131,7 @@ impl Verdict {
                     }
                 };
                 let limit = if self.is_cut {
-                    "; the search came to its bound (--effort 4 goes on)"
+                    "; the search stopped at its limit (--effort 4 tries more)"
                 } else {
                     ""
                 };
@@ -156,6 +154,12 @@ impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.line())
     }
+}
+
+/// Returns an estimated number of samples with two significant digits. The estimate is hardly more
+/// precise than that.
+pub fn about(samples: f64) -> String {
+    short(significant(samples, 2))
 }
 
 /// Joins the messages of mistakes.

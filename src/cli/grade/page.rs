@@ -213,7 +213,7 @@ fn verdict(one: &GradedStudent) -> String {
             );
         }
         if judged.verdict.is_cut {
-            html += "<p>The search came to its bound before all mistakes were tried: --effort 4 tries more.</p>";
+            html += "<p>The search stopped at its limit before all mistakes were tried: --effort 4 tries more.</p>";
         }
         if !judged.is_right() {
             html += &objects(judged);
@@ -290,8 +290,11 @@ fn objects(judged: &JudgedPicture) -> String {
     if wrong.is_empty() {
         return format!("<p>All {right} objects are right.</p>");
     }
-    format!(
-        "<p>Objects that are not right: {}. {right} are.</p>",
-        wrong.join(", ")
-    )
+    let rest = match right {
+        0 => "None is right".to_owned(),
+        1 => "1 is right".to_owned(),
+        count => format!("{count} are right"),
+    };
+    let wrong = wrong.join(", ");
+    format!("<p>Objects that are not right: {wrong}. {rest}.</p>")
 }

@@ -3,7 +3,12 @@
 use std::iter;
 
 use super::graded::{GradedStudent, percent};
-use crate::{cli::judge::quoted, diagnostic::visible_line, grading::NamedMistake, numbers::short};
+use crate::{
+    cli::judge::quoted,
+    diagnostic::visible_line,
+    grading::{NamedMistake, about},
+    numbers::short,
+};
 
 /// Returns two cells of a student's row: the root mean square error (RMSE) and the number of
 /// samples per pixel. Both are empty if no picture was judged.
@@ -12,9 +17,7 @@ pub fn figures(one: &GradedStudent) -> [String; 2] {
         Err(_) => [String::new(), String::new()],
         Ok(judged) => [
             format!("{:.5}", judged.rmse),
-            judged.samples().map_or_else(String::new, |samples| {
-                short((10.0 * samples).round() / 10.0)
-            }),
+            judged.samples().map_or_else(String::new, about),
         ],
     }
 }
@@ -51,7 +54,7 @@ pub fn table(graded: &[GradedStudent]) -> String {
             }
             if judged.verdict.is_cut {
                 text += &more(
-                    "the search came to its bound before all mistakes were tried: --effort 4 tries more",
+                    "the search stopped at its limit before all mistakes were tried: --effort 4 tries more",
                 );
             }
         }

@@ -213,7 +213,7 @@ pub const ROWS: &[MistakeRow] = &[
     row("eye_not_subtracted", InAreas, "lookat is taken for the view direction: the eye is not subtracted", "w = (eye − lookat)/|eye − lookat|", |c, _| if let View::Lookat(point) = c.scene.camera.view && point != DVec3::ZERO { c.scene.camera.view = View::Direction(point) }),
     row("near_far_distance", InAreas, "near and far are compared with distances from the eye, not with depths", CLIPPED, |c, _| c.behaviour.clips_distances = c.scene.camera.near > 0.0 || c.scene.camera.far.is_some()),
     // Adding zero turns a coordinate −0 into 0, so that `-0` is not printed.
-    row("up_negated", InAreas, "up has the wrong sign", UP, |c, _| c.scene.camera.up = -c.scene.camera.up + DVec3::ZERO),
+    row("up_negated", InAreas, "up has the wrong sign, or u is w × up: the picture is turned by 180 degrees", UP, |c, _| c.scene.camera.up = -c.scene.camera.up + DVec3::ZERO),
     row("up_ignored", InAreas, "up is ignored: (0, 1, 0) is taken for it", UP, |c, _| c.scene.camera.up = DVec3::Y),
     row("up_ignored", InAreas, "z is taken for up", UP, |c, _| c.scene.camera.up = DVec3::Z),
     row("fov_of_width", InAreas, "the window's height is taken for its width", WINDOW, |c, _| exchange_sides(c)),
@@ -241,7 +241,7 @@ pub const OBJECT_ROWS: &[MistakeRow] = &[
     row("triangle_anchor", InAreas, "is placed by its first vertex: its centroid is taken for that", CENTROID, |c, object| anchor(c, object, |[left, ..]| left)),
     row("triangle_anchor", InAreas, "is placed by the middle of its base: its centroid is taken for that", CENTROID, |c, object| anchor(c, object, |[left, right, _]| left.midpoint(right))),
     row("triangle_normal", InAreas, "has its normal reversed", "its corners lie counter-clockwise as seen from the tip of its normal: seen from the other side, it is mirrored", reverse_normal),
-    row("triangle_parallelogram", InAreas, "is a parallelogram: that its two coordinates add to no more than 1 is not asked", EDGES, |c, object| set_hit_fault(c, object, HitFault::Parallelogram)),
+    row("triangle_parallelogram", InAreas, "is a parallelogram: the test that its two coordinates add to at most 1 is missing", EDGES, |c, object| set_hit_fault(c, object, HitFault::Parallelogram)),
     row("triangle_edge", InAreas, "has no edge against its second vertex", EDGES, |c, object| set_hit_fault(c, object, HitFault::WithoutEdge(0))),
     row("triangle_edge", InAreas, "has no edge against its third vertex", EDGES, |c, object| set_hit_fault(c, object, HitFault::WithoutEdge(1))),
     row("triangle_edge", InAreas, "has no edge against its first vertex", EDGES, |c, object| set_hit_fault(c, object, HitFault::WithoutEdge(2))),
