@@ -112,9 +112,9 @@ fn placeholder(value: impl Into<String>) -> SnippetPart {
 /// `sampler` that the scene does not contain yet.
 fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     let is_there = |row: &schema::BlockRow| {
-        // If `camera {` follows the typed word `sp`, the parser reads `sp camera {`, a block with
-        // the keyword `sp` and the name `camera`. So the names of blocks are searched for keywords,
-        // too.
+        // While the word `sp` is typed in front of `camera {`, the parser reads `sp camera {`: a
+        // block with the keyword `sp` and the name `camera`. So a kind of block is present if its
+        // word stands in the place of a keyword or of a name.
         let words = analysis.blocks().flat_map(|block| [block.kind, block.name]);
         let mut words = words.flatten();
         words.any(|word| word.span != situation.word && word.text == row.name)

@@ -35,7 +35,7 @@ pub struct JpegTable {
     pub first: f64,
     /// Mean of the squares of all 64 steps.
     pub mean: f64,
-    /// The 64 steps, row by row. The first step is that of the block's mean.
+    /// The 64 quantization steps, row by row. The first one is that of the block's mean.
     pub steps: [u16; 64],
 }
 

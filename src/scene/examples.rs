@@ -17,8 +17,8 @@ use crate::{
 /// Returns an example for `field` that does not contradict the values of the other fields, which
 /// `given` returns by name. Returns the field's own example if no tried value fits.
 pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -> String {
-    // Names of the fields that contain points. An example for another field may be a point near one
-    // of these points.
+    // Names of the fields that contain points. If the schema's example for `field` contradicts the
+    // other fields, points near the values of these fields are tried, then points near the origin.
     const POINTS: [&str; 7] = [
         BOX.max.name,
         BOX.min.name,

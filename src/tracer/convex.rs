@@ -33,8 +33,8 @@ pub struct Convex<T: Real> {
     forms: Vec<Form<T>>,
     /// Number of the forms that bound the object.
     edges: u8,
-    /// Number of the forms that bound the object, plus the number of the faces where rays first hit
-    /// it. The sum is the index in `forms` of the first of the other faces.
+    /// Index in `forms` of the first form of the third group: `edges` plus the number of the faces
+    /// where rays first hit the object.
     firsts: u8,
     /// Numbers that identify the planes of the faces. The faces where rays first hit the object
     /// come before the other faces.

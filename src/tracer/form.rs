@@ -71,7 +71,8 @@ impl<T: Real> Form<T> {
         &self.factors
     }
 
-    /// Returns the error bound of a computed value of the form in the camera's window.
+    /// Returns the form's error bound: no value of the form that is computed in the camera's window
+    /// is wrong by more.
     pub fn rad(&self) -> T::Radius {
         self.rad
     }

@@ -169,8 +169,9 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
     let level = judge.fitting(candidate);
     let (_, fitted) = judge.fit_all(candidate, level, [0, 1])?;
     let long = judge.judged(candidate, level)?;
-    // A short number counts as not fitted, so its price is saved. In return, short numbers may fit
-    // worse, by as much as the saved prices.
+    // Shortened numbers no longer count as fitted, so a hypothesis with them saves the prices of
+    // the fitted numbers. Therefore its cost, which does not contain these savings yet, may exceed
+    // that of the long numbers by the saved prices.
     let most = long.cost + price(level, fitted.numbers.len());
     let steps = candidate.steps(1.0);
     let rounded_to = |part: f64| {

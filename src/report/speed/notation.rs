@@ -37,8 +37,8 @@ pub fn seconds(seconds: f64, digits: usize) -> String {
     }
 }
 
-/// Formats an estimated time with three significant digits. An extrapolated time has only two,
-/// since more would not be meaningful, and the mark `~`.
+/// Formats an estimated time with three significant digits. An extrapolated time is marked with `~`
+/// and has only two digits, because it is not accurate enough for more.
 pub fn time(estimate: &Estimate, time: f64) -> String {
     if estimate.is_extrapolated {
         format!("~{}", seconds(time, 2))

@@ -3,8 +3,9 @@
 //! The exact picture is rendered first, since all errors are differences from it. This render is
 //! not timed, because it also warms up the caches and the processor. Then the renders are timed in
 //! several rounds. In each round, every method renders once with every number of samples. If the
-//! user does not choose these numbers, they are 1, 4, 16, …; the first round stops when there is no
-//! time for a few rounds with more samples. In later rounds, the renders are in shuffled order, so
+//! user does not choose these numbers, they are 1, 4, 16 and 64, followed by higher powers of 4 as
+//! long as there is time for a few rounds with the next number and the error of some method is
+//! still above the smallest requested error. In later rounds, the renders are in shuffled order, so
 //! that other load on the machine affects all methods alike.
 //!
 //! A timed render starts with the scene in memory and ends with the picture in memory. It includes

@@ -61,7 +61,8 @@ pub(super) struct Reported {
 /// Definition of a name, by a `let` or as the index of a `for`.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::scene) struct Defined {
-    /// Value of the name. `None` if its expression has errors, or if an index has no value yet.
+    /// Value of the name. `None` if its expression has errors, if the name already has a predefined
+    /// meaning, or if the name is the counter of a `for` whose value is unknown.
     pub value: Option<Value>,
     /// Span of the name in its definition.
     pub place: Span,

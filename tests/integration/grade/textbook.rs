@@ -94,8 +94,8 @@ pub enum Squares {
     /// The number of a square is the sum of its two coordinates, each rounded to the nearest
     /// integer.
     Rounded,
-    /// The number of a square is the first coordinate, rounded to the nearest integer, plus the
-    /// second coordinate, rounded down.
+    /// The first coordinate is rounded to the nearest integer, the second one down. The number of a
+    /// square is their sum, so the board is moved by half a square along x.
     Moved,
     /// The two coordinates are added first. The number of a square is their sum, rounded down.
     Sum,
@@ -107,8 +107,8 @@ pub enum Squares {
     /// The number of a square is the first coordinate, truncated towards zero, plus the second
     /// coordinate, rounded down.
     TruncatedX,
-    /// The number of a square is the first coordinate, rounded down, plus the second coordinate,
-    /// rounded to the nearest integer.
+    /// The first coordinate is rounded down, the second one to the nearest integer. The number of a
+    /// square is their sum, so the board is moved by half a square along z.
     MovedZ,
     /// The board is turned by 45 degrees. The number of a square is the sum of its coordinates on
     /// the turned board, each rounded down.

@@ -51,8 +51,9 @@ pub(super) fn start(all: &LineCrossings, series: &EdgeSeries, tolerance: f64) ->
     let kappa =
         (factor * 4.0 / (PI * PI * PI) / (2.0 * g) / (4.0 * BEYOND_LAST_SHARE * tolerance)).sqrt();
     let cheapest = (0.5 * MODE_COST * kappa * g).sqrt();
-    // From the depth `nothing` on, the remaining sum is negligible. The first term of the series X
-    // is at most its factor times ½/π.
+    // At the depth `nothing`, the first terms of the edge's series ([`EdgeSeries`]) at all later
+    // crossings add up to at most half of the share `SKIPPED_SHARE`, so the rest is usually
+    // negligible. At the depth m, the first term is at most `factor`·½/π·m^−3.
     let nothing = (factor * 0.25 / PI / g / (0.5 * SKIPPED_SHARE * tolerance)).sqrt() + g;
     // `steep` and `fourth` are depths at which two errors reach their limits. The truncation error
     // of a mode falls as w^−5, and the sum of the terms of the series X from the fourth term on as
