@@ -91,8 +91,8 @@ impl Sweep {
         [&self.from, &self.to].map(|value| format!("{}={value}", self.target))
     }
 
-    /// Returns the scenes of the sweep. Their values are computed by the scene language: a `let` for
-    /// each is added to the end of the scene's text.
+    /// Returns the scenes of the sweep. Their values are computed by the scene language: a `let`
+    /// for each is added to the end of the scene's text.
     ///
     /// # Errors
     ///

@@ -17,7 +17,8 @@ pub struct Picture {
     pub crop: Option<Area>,
     /// Opacity of the pixels; `None` if all are opaque.
     pub opacity: Option<Opacity>,
-    /// Digest of the scene and its overrides, from an EXR file that Pinhole wrote. Otherwise `None`.
+    /// Digest of the scene and its overrides, from an EXR file that Pinhole wrote. Otherwise
+    /// `None`.
     pub digest: Option<String>,
 }
 
