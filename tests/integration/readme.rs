@@ -14,9 +14,10 @@ use crate::{
 };
 
 /// Documents whose `console` blocks are run and whose `scn` blocks are checked.
-const DOCUMENTS: [&str; 10] = [
+const DOCUMENTS: [&str; 11] = [
     "README.md",
     "docs/accuracy.md",
+    "docs/commands.md",
     "docs/handout/camera.md",
     "docs/handout/error.md",
     "docs/handout/pixel.md",
@@ -141,6 +142,8 @@ fn relative_links_lead_to_files() {
         "examples",
         "benches",
         "grammar",
+        "python/README.md",
+        "studio/page/README.md",
     ]
     .map(|name| root().join(name))
     .to_vec();
