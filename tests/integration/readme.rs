@@ -112,16 +112,19 @@ fn the_readme_has_the_two_set_up_commands_and_the_first_scene() {
 #[test]
 fn every_command_is_in_the_readme_and_has_examples() {
     let (folder, readme) = (Folder::with([]), read("README.md"));
+    let reference = read("docs/commands.md");
     let help = folder.done("--help").text().to_owned();
     let (_, list) = help.split_once("Commands:\n").unwrap();
     let list = list.lines().take_while(|line| !line.is_empty());
     let commands = list.map(|line| line.split_whitespace().next().unwrap());
     for command in commands.filter(|name| *name != "help") {
         let call = format!("pinhole {command}");
-        assert!(
-            readme.contains(&format!("`{call}")),
-            "no {call} in README.md"
-        );
+        for (document, text) in [("README.md", &readme), ("docs/commands.md", &reference)] {
+            assert!(
+                text.contains(&format!("`{call}")),
+                "no {call} in {document}"
+            );
+        }
         // The command `lsp` has no examples, because editors start it and nobody types its
         // messages.
         let help = folder.done(&format!("{command} --help"));
