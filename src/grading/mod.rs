@@ -31,6 +31,7 @@ use std::{
 #[cfg(feature = "json")]
 #[doc(hidden)]
 pub use self::json::figures;
+#[cfg(feature = "cli")]
 pub(crate) use self::verdict::about;
 use self::{
     empty_pixels::without_empty,
