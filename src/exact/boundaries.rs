@@ -261,8 +261,10 @@ impl<'a, T: Precision> Boundaries<'a, T> {
             let object = T::object(&self.world.geometry, self.candidates[at].object);
             // The world's cache cannot keep all prepared objects if there are more candidates than
             // slots in the cache. Each object may then have to be prepared again.
-            if self.candidates.len() > CACHE_SLOTS && matches!(*object, Object::Convex(_)) {
-                self.budget.charge(PREPARATION_WORK);
+            let is_prepared_again = self.candidates.len() > CACHE_SLOTS;
+            match *object {
+                Object::Convex(_) if is_prepared_again => self.budget.charge(PREPARATION_WORK),
+                Object::Convex(_) | Object::Sphere(_) | Object::Checkerboard(_) => {}
             }
             object
         })

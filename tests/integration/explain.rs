@@ -100,6 +100,17 @@ fn the_wrong_scene_of_a_page_has_only_its_code_and_the_right_one_none() {
 }
 
 #[test]
+fn the_page_on_unknown_blocks_names_all_kinds_of_blocks() {
+    let page = explain::pages().find(|page| page.code == "unknown_kind");
+    let page = page.expect("a page on unknown blocks").text;
+    let kinds: Vec<&str> = schema::BLOCKS.iter().map(|row| row.name).collect();
+    let (last, others) = kinds.split_last().expect("kinds of blocks");
+    let list = format!("{} and {last}", others.join(", "));
+    let text = page.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(text.contains(&list), "{list}");
+}
+
+#[test]
 fn explain_pages_share_one_structure_and_no_title_or_reason() {
     let mut alike = BTreeSet::new();
     for page in explain::pages() {

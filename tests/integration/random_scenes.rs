@@ -12,6 +12,7 @@ use pinhole::{
     film::Film,
     render::{Control, Exact, Rendered},
     scene::{self, Count, Method, Scene, Shape},
+    schema::BLOCKS,
 };
 
 use crate::{
@@ -203,6 +204,18 @@ fn random_scene(random: &mut Random) -> (String, Scene) {
         if let Some(scene) = scene::read(&sources(&text)).scene {
             return (text, scene);
         }
+    }
+}
+
+/// Only kinds of objects that random scenes contain are compared with samples.
+#[test]
+fn every_kind_of_object_is_in_random_scenes() {
+    let mut random = Random::new(1);
+    let scenes: Vec<Scene> = (0..64).map(|_| random_scene(&mut random).1).collect();
+    for row in BLOCKS.iter().filter(|row| row.is_object) {
+        let mut objects = scenes.iter().flat_map(|scene| scene.objects.iter());
+        let is_of_kind = |object: &scene::Object| object.shape.kind() == row.name;
+        assert!(objects.any(is_of_kind), "{}", row.name);
     }
 }
 

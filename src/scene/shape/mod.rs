@@ -4,7 +4,7 @@
 //! and extent, its fields, and its description. This file only dispatches to the kinds.
 //!
 //! A new kind begins with [`BlockKind`] and its row in the schema. From there, compiler errors and
-//! failing tests lead to most other places that must be changed; CONTRIBUTING.md lists all of them.
+//! failing tests lead to most other places that must be changed; CONTRIBUTING.md lists the rest.
 
 mod checkerboard;
 mod cuboid;
