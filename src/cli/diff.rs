@@ -369,7 +369,7 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
         writeln!(out)?;
         writeln!(
             out,
-            "limit     the search stopped at its limit, and not all mistakes were tried: --effort 4 tries more"
+            "limit     the search stopped at its limit, and not all mistakes were tried: a greater --effort tries more"
         )?;
     }
     if matches!(verdict.kind, Kind::Wrong | Kind::Unknown) {

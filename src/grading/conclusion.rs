@@ -1,6 +1,6 @@
 //! Computes the verdict on a picture from the best hypothesis about the program that made it. The
-//! hypothesis's mistakes are named if they explain the picture. Otherwise they are reported as
-//! guesses.
+//! hypothesis's mistakes are named if they explain the picture and are plausible. Otherwise they are
+//! reported as guesses.
 
 use super::{
     hypotheses::{Candidate, Mistake, Shows, mistakes, parameters},
@@ -19,15 +19,15 @@ use crate::{
 /// Threshold below which a mistake is not reported: the fraction of the picture's squared error
 /// that the mistake explains. A larger value would hide small mistakes. A smaller one would report
 /// mistakes that explain almost nothing.
-const NOTHING: f64 = 1e-5;
+const LEAST_EXPLAINED: f64 = 1e-5;
 
 /// Number of fields of one object with wrong numbers from which on they are not believed. Few
 /// students mistype two fields of an object, and hardly any three.
-const MADE_UP: usize = 3;
+const IMPLAUSIBLE_FIELDS: usize = 3;
 
 /// Displacement of an object, in pixels, below which a wrong number is not believed. It exceeds the
 /// distance of the mean of four random samples, shared by all pixels, from a pixel's middle.
-const SLIGHT: f64 = 0.4;
+const LEAST_DISPLACEMENT: f64 = 0.4;
 
 /// Fraction of the picture's squared error above which guesses are left out if they leave it
 /// unexplained. They are then about pictures of another scene, and help nobody.
@@ -47,14 +47,12 @@ const PARALLEL_OF_OWN_SIZE: &str =
 pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Verdict {
     let (scene, jpeg) = (judge.scene, judge.fine.jpeg);
     let right = Candidate::correct(scene);
-    // `is_cut` is read before the verdict is computed, because this computation spends work, too,
-    // and may use up the budget. A search that explained the picture is complete, so it was not cut
-    // short.
+    // A search that explained the picture is complete, so it was not cut short.
     let is_explained = matches!(found, Some((_, true)));
     let is_cut = judge.work.is_cut() && !is_explained;
     let mut verdict = match found {
         Some((found, is_explained)) if !found.candidate().mistakes.is_empty() => {
-            wrong(judge, &found, is_explained)
+            with_mistakes(judge, &found, is_explained)
         }
         Some((_, true)) if !has_other_colors(film, scene, jpeg) => {
             let judged = judge.judged(&right, &judge.fine);
@@ -96,10 +94,10 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
     jpeg.is_none() && film.pixels().iter().any(is_other)
 }
 
-/// Returns the verdict for a hypothesis with mistakes. The mistakes are named if together they
-/// explain the picture; otherwise they are reported as guesses.
-fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
-    let (scene, last) = (judge.scene, found.candidate());
+/// Returns the mistakes of the hypothesis `last` in words, each with the part of the difference from
+/// the picture that it explains. `is_explained` says whether the hypothesis explains the picture.
+fn attributed(judge: &Judge, last: &Candidate, is_explained: bool) -> Vec<NamedMistake> {
+    let scene = judge.scene;
     // The medium resolution is enough to measure how much each mistake explains. Shifted samples
     // and a wrong pixel width are visible only at full resolution, so the central crop is used for
     // them.
@@ -174,6 +172,14 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
         });
         (left, before) = (now, after);
     }
+    mistakes
+}
+
+/// Returns the verdict for a hypothesis with mistakes. The mistakes are named if together they
+/// explain the picture and are plausible; otherwise they are reported as guesses.
+fn with_mistakes(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
+    let (scene, last) = (judge.scene, found.candidate());
+    let mut mistakes = attributed(judge, last, is_explained);
     let square = |candidate: &Candidate| {
         let shown = judge.predicted(candidate, &judge.fine);
         shown.map_or(f64::INFINITY, |shown| shown.strays().square())
@@ -181,7 +187,7 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     let correct = Candidate::correct(scene);
     let rest = (!is_explained).then(|| square(last) / square(&correct));
     let mut rest = rest.filter(|rest| *rest > 0.0).map(|rest| rest.min(1.0));
-    let explains = |mistake: &NamedMistake| mistake.explains >= NOTHING;
+    let explains = |mistake: &NamedMistake| mistake.explains >= LEAST_EXPLAINED;
     if !is_explained || mistakes.iter().any(explains) {
         mistakes.retain(explains);
     }
@@ -231,7 +237,7 @@ fn is_slight(scene: &Scene, candidate: &Candidate, named: &[NamedMistake]) -> bo
     };
     let mut objects = 0..scene.objects.len();
     candidate.mistakes.iter().filter(is_named).all(is_place)
-        && objects.all(|object| objects::off(scene, &candidate.scene, object) < SLIGHT)
+        && objects.all(|object| objects::off(scene, &candidate.scene, object) < LEAST_DISPLACEMENT)
 }
 
 /// Returns whether the hypothesis has wrong numbers in so many fields of one object that they more
@@ -241,7 +247,9 @@ fn is_made_up(candidate: &Candidate) -> bool {
     let numbers = mistakes.filter(|mistake| matches!(mistake, Mistake::Numbers(..)));
     let objects: Vec<usize> = numbers.filter_map(Mistake::object).collect();
     let count = |object: &usize| objects.iter().filter(|other| *other == object).count();
-    objects.iter().any(|object| count(object) >= MADE_UP)
+    objects
+        .iter()
+        .any(|object| count(object) >= IMPLAUSIBLE_FIELDS)
 }
 
 /// Returns the variants of a mistake that explain the picture, too. The picture alone cannot tell

@@ -64,17 +64,18 @@ pub struct Verdict {
     pub samples: Option<f64>,
     /// The mistakes that together explain the picture.
     pub mistakes: Vec<NamedMistake>,
-    /// The mistakes that come nearest to the picture, if no known mistakes explain it.
+    /// The mistakes that come nearest to the picture, if no known mistakes explain it, or only
+    /// implausible ones do.
     pub guesses: Vec<NamedMistake>,
-    /// Fraction of the squared difference between the picture and the exact one that the mistakes
-    /// or guesses do not explain. Differences that noise can explain are ignored. `None` if only
-    /// noise is left, or if there are no mistakes or guesses.
+    /// Fraction of the squared difference between the picture and the exact one that the guesses
+    /// do not explain. Differences that noise can explain are ignored. `None` if only noise is
+    /// left, or if there are no guesses.
     pub rest: Option<f64>,
     /// The verdict on each object.
     pub objects: Vec<ObjectVerdict>,
     /// Whether the picture shows the background correctly.
     pub is_background_right: bool,
-    /// Whether the picture's file is a JPEG, which changes colours.
+    /// Whether the picture's file is a JPEG or a lossy WebP, whose coding changes colours.
     pub is_coded: bool,
     /// Whether the search used up its budget of work before it tried all mistakes.
     pub is_cut: bool,
@@ -118,7 +119,7 @@ impl Verdict {
                 format!("right but for sampling noise: about {count} random samples per pixel")
             }
             (Kind::Noise, None) if self.is_coded => {
-                "right but for sampling noise and what JPEG changes".to_owned()
+                "right but for sampling noise and what lossy compression changes".to_owned()
             }
             (Kind::Noise, None) => "right but for sampling noise".to_owned(),
             (Kind::Wrong, _) => format!("wrong: {}", messages(&self.mistakes)),
@@ -131,7 +132,7 @@ impl Verdict {
                     }
                 };
                 let limit = if self.is_cut {
-                    "; the search stopped at its limit (--effort 4 tries more)"
+                    "; the search stopped at its limit"
                 } else {
                     ""
                 };

@@ -213,7 +213,7 @@ fn verdict(one: &GradedStudent) -> String {
             );
         }
         if judged.verdict.is_cut {
-            html += "<p>The search stopped at its limit before all mistakes were tried: --effort 4 tries more.</p>";
+            html += "<p>The search stopped at its limit before all mistakes were tried: a greater --effort tries more.</p>";
         }
         if !judged.is_right() {
             html += &objects(judged);

@@ -54,7 +54,7 @@ pub fn table(graded: &[GradedStudent]) -> String {
             }
             if judged.verdict.is_cut {
                 text += &more(
-                    "the search stopped at its limit before all mistakes were tried: --effort 4 tries more",
+                    "the search stopped at its limit before all mistakes were tried: a greater --effort tries more",
                 );
             }
         }
