@@ -30,12 +30,35 @@ def test_it_runs_as_a_module(tmp_path: Path) -> None:
     assert (tmp_path / "a.scn").read_text().startswith("camera {")
 
 
-def test_it_starts_without_numpy() -> None:
-    script = "import pinhole.__main__, sys; print('numpy' in sys.modules)"
+def test_it_starts_without_numpy_and_what_it_does_not_use() -> None:
+    script = """
+import sys, pinhole.__main__
+sys.argv[1:] = ["--version"]
+pinhole.__main__.main()
+print([name for name in ("numpy", "json", "pinhole._scene") if name in sys.modules])
+import pinhole
+print(pinhole.Scene.__name__, pinhole.Fix.__name__, all(hasattr(pinhole, it) for it in pinhole.__all__))
+"""
     said = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True
     )
-    assert said.stdout == "False\n"
+    assert said.stdout.splitlines()[1:] == ["[]", "Scene Fix True"]
+
+
+def test_ctrl_c_during_the_import_prints_no_traceback() -> None:
+    # The compiled module takes longest to import. Its import is where this script presses Ctrl-C.
+    script = """
+import os, signal, sys, pinhole.__main__
+class Pressed:
+    def find_spec(self, name, path=None, target=None):
+        if name == "pinhole._native":
+            os.kill(os.getpid(), signal.SIGINT)
+sys.meta_path.insert(0, Pressed())
+sys.argv[1:] = ["--version"]
+sys.exit(pinhole.__main__.main())
+"""
+    said = subprocess.run([sys.executable, "-c", script], capture_output=True, check=False)
+    assert (said.returncode, said.stdout, said.stderr) == (-signal.SIGINT, b"", b"")
 
 
 def test_ctrl_c_and_termination_leave_no_file(program: Program, tmp_path: Path) -> None:
