@@ -194,6 +194,10 @@ class Scene:
     def _key(self) -> tuple[str, tuple[str, ...], str]:
         return self._text, self._sets, self._name
 
+    def __dask_tokenize__(self) -> tuple[str, ...]:
+        """Returns what distinguishes scenes, from which Dask names the results of its tasks."""
+        return "pinhole.Scene", self._text, *self._sets, self._name
+
     def __reduce__(self) -> tuple[Any, ...]:
         return _unpickled, self._key()
 
