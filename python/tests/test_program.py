@@ -7,6 +7,7 @@ import subprocess
 import sys
 import sysconfig
 import time
+from importlib import metadata
 from pathlib import Path
 
 from conftest import Program
@@ -20,6 +21,13 @@ def test_exit_statuses_are_those_of_the_program(program: Program, tmp_path: Path
     assert program("render").returncode == 2
     unknown = program("\x1b[31m")
     assert unknown.returncode == 2 and b"\x1b" not in unknown.stderr and b"u{1b}" in unknown.stderr
+
+
+def test_it_comes_with_its_licences() -> None:
+    files = metadata.files("pinhole-scn") or []
+    licences = {file.name: file.read_text() for file in files if file.name.startswith("LICENSE")}
+    assert set(licences) == {"LICENSE-APACHE", "LICENSE-MIT"}
+    assert "Permission is hereby granted" in licences["LICENSE-MIT"]
 
 
 def test_it_runs_as_a_module(tmp_path: Path) -> None:
