@@ -8,6 +8,7 @@
 
 mod background;
 mod picture;
+mod saving;
 mod scene;
 
 use std::ffi::OsString;
@@ -38,6 +39,7 @@ mod _native {
     #[pymodule_export]
     use super::{
         program,
+        saving::{save_exr, save_png, write_exr, write_png},
         scene::{Scene, carried, read},
     };
 }

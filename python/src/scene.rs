@@ -3,7 +3,6 @@
 use std::{
     io::{self, Cursor},
     num::NonZero,
-    path::{Path, PathBuf},
     sync::{Arc, Mutex, PoisonError, atomic::AtomicBool},
 };
 
@@ -12,7 +11,6 @@ use pinhole::{
     SceneData,
     area::Area,
     diagnostic::{Report, Style, to_json},
-    files::{self, Purpose},
     film::{self, Film, Pixel, Recipe, Rounding},
     glam::DVec2,
     grading::{self, Reference},
@@ -44,11 +42,6 @@ fn not_rendered(error: RenderError) -> PyErr {
         RenderError::Cancelled => PyKeyboardInterrupt::new_err(()),
         _ => PyRuntimeError::new_err(message),
     }
-}
-
-fn not_written(path: &Path, error: io::Error) -> PyErr {
-    let message = format!("cannot write to {}: {error}", path.display());
-    io::Error::new(error.kind(), message).into()
 }
 
 /// Returns the text and the settings of the scene that a PNG carries, or `None` if the bytes are no
@@ -88,7 +81,8 @@ pub fn read(
 #[pyclass(frozen)]
 pub struct Scene(Arc<Inner>);
 
-struct Inner {
+/// What the threads that work on a scene share.
+pub struct Inner {
     sources: Sources,
     data: SceneData,
     /// The prepared scene, once something was rendered.
@@ -97,8 +91,10 @@ struct Inner {
     reference: Mutex<Option<Arc<Reference>>>,
 }
 
-type Crop = Option<[u32; 4]>;
-type Threads = Option<NonZero<usize>>;
+/// Left column, top row, width and height of a part; `None` for the whole picture.
+pub type Crop = Option<[u32; 4]>;
+/// Number of threads; `None` for one per processor.
+pub type Threads = Option<NonZero<usize>>;
 
 #[pymethods]
 impl Scene {
@@ -158,43 +154,6 @@ impl Scene {
         Ok(PyBytes::new(py, &bytes).unbind())
     }
 
-    /// Writes the picture to a PNG file. Returns whether the file carries the scene.
-    fn save_png(
-        &self,
-        py: Python<'_>,
-        path: PathBuf,
-        crop: Crop,
-        threads: Threads,
-    ) -> PyResult<bool> {
-        self.run(py, move |inner, cancel| {
-            let film: Film<[u8; 3]> = inner.film(crop, threads, cancel)?;
-            let recipe = inner.recipe(crop);
-            files::write(&path, Purpose::Named, cancel, |out| {
-                film::write_png(&film, Some(&recipe), out)
-            })
-            .map_err(|error| not_written(&path, error))?;
-            Ok(recipe.fits())
-        })
-    }
-
-    /// Writes the picture to an OpenEXR file.
-    fn save_exr(
-        &self,
-        py: Python<'_>,
-        path: PathBuf,
-        crop: Crop,
-        threads: Threads,
-    ) -> PyResult<()> {
-        self.run(py, move |inner, cancel| {
-            let film: Film<[f32; 3]> = inner.film(crop, threads, cancel)?;
-            let digest = inner.recipe(crop).digest();
-            files::write(&path, Purpose::Named, cancel, |out| {
-                film::write_exr(&film, inner.part(crop), inner.whole(), Some(&digest), out)
-            })
-            .map_err(|error| not_written(&path, error))
-        })
-    }
-
     fn inspect(&self, py: Python<'_>) -> PyResult<String> {
         self.run(py, |inner, _| {
             let mut json = Vec::new();
@@ -236,12 +195,18 @@ impl Scene {
 }
 
 impl Scene {
-    fn run<T: Send + 'static>(
+    /// Returns what threads share.
+    pub fn shared(&self) -> Arc<Inner> {
+        Arc::clone(&self.0)
+    }
+
+    /// Runs `work` on another thread, until it ends or Ctrl-C is pressed.
+    pub fn run<T: Send + 'static>(
         &self,
         py: Python<'_>,
         work: impl FnOnce(&Inner, &AtomicBool) -> PyResult<T> + Send + 'static,
     ) -> PyResult<T> {
-        let inner = Arc::clone(&self.0);
+        let inner = self.shared();
         cancellable(py, move |cancel| work(&inner, cancel))?
     }
 
@@ -265,11 +230,13 @@ impl Inner {
         }
     }
 
-    fn whole(&self) -> Area {
+    /// Returns the area of the whole picture.
+    pub fn whole(&self) -> Area {
         Area::whole(self.data.image.width, self.data.image.height)
     }
 
-    fn part(&self, crop: Crop) -> Area {
+    /// Returns the area of a part of the picture.
+    pub fn part(&self, crop: Crop) -> Area {
         crop.map_or(self.whole(), |[x, y, width, height]| Area {
             x,
             y,
@@ -278,7 +245,8 @@ impl Inner {
         })
     }
 
-    fn recipe(&self, crop: Crop) -> Recipe {
+    /// Returns what a file stores about a part of the picture.
+    pub fn recipe(&self, crop: Crop) -> Recipe {
         let sets = self.sources.sets.iter();
         Recipe {
             scene: self.sources.file.text().to_owned(),
@@ -294,13 +262,31 @@ impl Inner {
         threads: Threads,
         cancel: &AtomicBool,
     ) -> PyResult<Film<P>> {
-        let whole = self.whole();
-        let sampling = Sampling::new(&self.data.sampler, whole.width, whole.height);
-        let world = self.world(cancel)?;
+        let (world, sampling) = (self.world(cancel)?, self.sampling());
         let control = control(threads, cancel);
         let rendered = render::render_as_asked(&world, &sampling, self.part(crop), &control)
             .map_err(not_rendered)?;
         Ok(rendered.into_film())
+    }
+
+    /// Renders a part of the picture in bands of rows, and calls `write` with them.
+    pub fn bands<P: Pixel, T>(
+        &self,
+        crop: Crop,
+        threads: Threads,
+        cancel: &AtomicBool,
+        write: impl FnOnce(&mut dyn Iterator<Item = PyResult<Film<P>>>) -> PyResult<T>,
+    ) -> PyResult<T> {
+        let (world, sampling) = (self.world(cancel)?, self.sampling());
+        let control = control(threads, cancel);
+        let bands = render::render_bands(&world, &sampling, self.part(crop), &control)
+            .map_err(not_rendered)?;
+        write(&mut bands.map(|band| Ok(band.map_err(not_rendered)?.1.into_film())))
+    }
+
+    fn sampling(&self) -> Sampling {
+        let whole = self.whole();
+        Sampling::new(&self.data.sampler, whole.width, whole.height)
     }
 
     fn world(&self, cancel: &AtomicBool) -> PyResult<Arc<World>> {

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -136,6 +138,23 @@ def test_what_cannot_be_rendered_is_refused_in_words(scene: pinhole.Scene, tmp_p
         scene.save(tmp_path / "no" / "a.png")
     with pytest.raises(FileNotFoundError):
         pinhole.load(tmp_path / "b.scn")
+
+
+@pytest.mark.parametrize("ending", ["png", "exr"])
+def test_a_picture_is_saved_in_less_memory_than_it_has(
+    python: Callable[[str], "subprocess.Popen[str]"], tmp_path: Path, ending: str
+) -> None:
+    # A sky of 96 million pixels, which are 288 MB of bytes and 1152 MB of floats.
+    script = python(f"""
+import pinhole
+size = {{"image.width": 12000, "image.height": 8000, "sampler.per_pixel": 1}}
+scene = pinhole.Scene("camera {{ eye (0, 2, 8)  lookat (0, 1, 0) }}", set=size)
+scene.save("a.{ending}")
+print(next(line for line in open("/proc/self/status") if line.startswith("VmHWM")))
+""")
+    output, _ = script.communicate(timeout=120)
+    assert script.returncode == 0 and int(output.split()[1]) < 200_000
+    assert (tmp_path / f"a.{ending}").stat().st_size > 10_000
 
 
 def test_a_picture_without_enough_memory_for_it() -> None:

@@ -16,34 +16,11 @@ use crate::{
     files::{self, Purpose, Sink},
     film::{self, Film, Recipe},
     numbers,
-    render::{Control, Exact, RenderError, Rendered, render_as_asked},
+    render::{Control, Exact, RenderError, Rendered, render_as_asked, render_bands},
     sampling::Sampling,
     scene::Scene,
     tracer::World,
 };
-
-/// Greatest number of pixels of a picture that are in memory at once. Greater pictures are rendered
-/// and written in bands of rows, so that the size of a poster is limited by the disk. The pixels of
-/// a band take 12 to 50 MB. With smaller bands, threads would wait more often for each other at a
-/// band's end.
-const BAND_PIXELS: u32 = 1 << 22;
-
-/// Number of pixels above which a picture must fit into memory, although it is rendered in bands.
-/// It is that of a poster with sides of 2^18 pixels, which takes hours to render. More pixels are
-/// probably a mistyped size.
-const MISTYPED: u64 = 1 << 36;
-
-/// Returns the bands of rows in which a part of a picture is rendered, from the top.
-fn bands(part: Area) -> impl Iterator<Item = Area> {
-    let rows = (BAND_PIXELS / part.width.max(1)).max(1);
-    (0..part.height)
-        .step_by(rows as usize)
-        .map(move |top| Area {
-            y: part.y + top,
-            height: rows.min(part.height - top),
-            ..part
-        })
-}
 
 /// Renders the area `part` of a scene's picture to pixels of type `P`. Shows a progress bar if
 /// standard error is a terminal.
@@ -269,16 +246,13 @@ impl PictureOutput {
         cancel: &AtomicBool,
         write: impl FnOnce(&mut dyn Sink, &mut Bands<P>) -> io::Result<()>,
     ) -> Result<String, Trouble> {
-        if part.pixels() > MISTYPED {
-            let reserved = film::reserve_memory(part.width, part.height, size_of::<P>() as u64);
-            reserved.map_err(RenderError::from)?;
-        }
         let mut certificate = Certificate::default();
         let mut failed = None;
         let written = with_progress(scene, part, cancel, |sampling, control| {
-            let mut rendered = bands(part).map(|band| {
-                let rendered = render_as_asked(world, sampling, band, control)?;
-                certificate.add(&rendered, band, |exact| exact.certain);
+            let bands = render_bands(world, sampling, part, control)?;
+            let mut rendered = bands.map(|band| {
+                let (area, rendered) = band?;
+                certificate.add(&rendered, area, |exact| exact.certain);
                 Ok::<_, RenderError>(rendered.into_film())
             });
             // The first band is rendered before the file is opened, so that usual pictures leave no

@@ -15,6 +15,9 @@ pub struct Picture {
     pub coding: Coding,
     /// The part of the whole picture that the file contains; `None` if the file does not say so.
     pub crop: Option<Area>,
+    /// Numbers of columns and rows of the whole picture, if the file contains only a part and says
+    /// so. Otherwise `None`.
+    pub size: Option<[u32; 2]>,
     /// Opacity of the pixels; `None` if all are opaque.
     pub opacity: Option<Opacity>,
     /// Digest of the scene and its overrides, from an EXR file that Pinhole wrote. Otherwise
@@ -30,6 +33,7 @@ impl Picture {
             rounding,
             coding: Coding::Exact,
             crop: None,
+            size: None,
             opacity: None,
             digest: None,
         }

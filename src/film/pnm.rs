@@ -172,6 +172,7 @@ fn read_bytes(bytes: &[u8], limit: u64, coding: Coding) -> Result<Picture, Unrea
         rounding,
         coding: mended.unwrap_or(coding),
         crop: None,
+        size: None,
         opacity: None,
     })
 }

@@ -146,6 +146,7 @@ fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unread
             _ => Coding::Exact,
         },
         crop: None,
+        size: None,
         opacity: opacity?,
     })
 }
@@ -196,6 +197,7 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let count = film.pixels().len();
     let pixels = (0..count).map(|index| places.map(|place| word(channels * index + place)));
     let opacity = mix(&mut film, pixels, |word| light[usize::from(word)], part)?;
+    let recipe = read_recipe(bytes).ok();
     Ok(Picture {
         digest: None,
         film,
@@ -205,7 +207,8 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
         } else {
             Coding::Exact
         },
-        crop: read_recipe(bytes).ok().and_then(|recipe| recipe.crop),
+        crop: recipe.as_ref().and_then(|recipe| recipe.crop),
+        size: recipe.and_then(|recipe| recipe.size),
         opacity,
     })
 }

@@ -78,6 +78,10 @@ pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
         }),
         _ => None,
     };
+    let size = match [window.size.0, window.size.1].map(u32::try_from) {
+        [Ok(width), Ok(height)] => Some([width, height]),
+        _ => None,
+    };
     let is_half = |channel: &ChannelDescription| channel.sample_type == SampleType::F16;
     Ok(Picture {
         digest: stored_digest(&image.layer_data.attributes),
@@ -89,6 +93,7 @@ pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
         },
         coding: Coding::Exact,
         crop,
+        size: crop.and(size),
         opacity: None,
     })
 }

@@ -3,6 +3,8 @@
 use std::{io, path::Path};
 
 use super::{Error, Picture};
+#[cfg(feature = "exr")]
+use crate::area::Area;
 use crate::{
     cancel,
     files::{self, Purpose},
@@ -37,10 +39,10 @@ impl Picture {
             }),
             #[cfg(feature = "exr")]
             Some("exr") => files::write(path, Purpose::Named, &cancel::NEVER, |out| {
-                let whole = crate::area::Area::whole(self.width(), self.height());
+                let [part, whole] = self.place();
                 let own = self.recipe().map(|recipe| recipe.digest());
                 let digest = own.or_else(|| self.coded.digest.clone());
-                film::write_exr(self.film(), whole, whole, digest.as_deref(), out)
+                film::write_exr(self.film(), part, whole, digest.as_deref(), out)
             }),
             _ => {
                 let message = "a picture's file ends in .png or .exr";
@@ -51,6 +53,22 @@ impl Picture {
             path: path.to_owned(),
             error,
         })
+    }
+
+    /// Returns the area that the picture shows, and that of the whole picture. They are equal unless
+    /// the picture was read from a file that says where its part lies.
+    #[cfg(feature = "exr")]
+    fn place(&self) -> [Area; 2] {
+        let own = Area::whole(self.width(), self.height());
+        match (self.coded.crop, self.coded.size) {
+            (Some(part), Some([width, height]))
+                if part.lies_in(Area::whole(width, height))
+                    && [part.width, part.height] == [own.width, own.height] =>
+            {
+                [part, Area::whole(width, height)]
+            }
+            _ => [own, own],
+        }
     }
 
     /// Returns the scene's text and its settings (as of `--set`) in the form in which a PNG stores
@@ -65,7 +83,7 @@ impl Picture {
                 .map(|set| set.text().to_owned())
                 .collect(),
             crop: self.coded.crop,
-            size: None,
+            size: self.coded.size,
         })
     }
 }

@@ -6,10 +6,11 @@
 //! the tiles, or on the part.
 //!
 //! `sampled` renders with samples, and calls `renderer` for each tile. `exact` renders without
-//! samples. `slices` renders one square of the picture at a time, with samples or exactly. This
-//! file calls `sampled` or `exact`, according to the scene's sampler, and contains the code that
-//! they share.
+//! samples. `slices` renders one square of the picture at a time, with samples or exactly, and
+//! `bands` several rows at a time. This file calls `sampled` or `exact`, according to the scene's
+//! sampler, and contains the code that they share.
 
+mod bands;
 mod exact;
 mod renderer;
 mod sampled;
@@ -41,6 +42,7 @@ use crate::{
 pub use self::exact::{Exact, render_exact};
 #[doc(hidden)]
 pub use self::{
+    bands::render_bands,
     exact::render_numbers,
     slices::{SLICE, Slices, pixel_work},
 };

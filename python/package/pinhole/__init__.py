@@ -12,13 +12,26 @@ whole numbers are in sRGB, as files and screens have them. Those of floats are i
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from ._problems import Edit, Fix, Label, Problem, Problems, SceneError
-from ._scene import Crop, Picture, Scene, Settings, Value, check, load
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from IPython.core.interactiveshell import InteractiveShell
+
+    from ._problems import Edit, Fix, Label, Problem, Problems, SceneError
+    from ._scene import Crop, Picture, Scene, Settings, Value, check, load
+else:
+
+    def __getattr__(name: str) -> Any:
+        """Imports a name when it is used first, so that the program starts without most of them."""
+        if name not in __all__:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        homes = (import_module(home, __name__) for home in ("._scene", "._problems"))
+        globals()[name] = next(getattr(home, name) for home in homes if hasattr(home, name))
+        return globals()[name]
+
+    def __dir__() -> list[str]:
+        return sorted({*globals(), *__all__})
 
 __all__ = [
     "Crop",

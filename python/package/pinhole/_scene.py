@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from operator import index
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, Union
 
 from . import _problems
 from ._compiled import native
+from ._files import is_exr, warn_of_length
 from ._problems import Problems, SceneError
 
 if TYPE_CHECKING:
@@ -115,19 +115,13 @@ class Scene:
         """Renders to a file with the bytes that the program writes.
 
         The path ends in `.png`, for sRGB with the scene's text in the file, or in `.exr`, for
-        linear light. The file is written completely or not at all.
+        linear light. The file is written completely or not at all. A large picture is rendered and
+        written in bands of rows, so that it need not fit into memory.
         """
         path, part = os.fspath(path), self._part(crop, threads)
-        ending = os.path.splitext(path)[1].lower()
-        if ending == ".exr":
-            self._native.save_exr(path, *part)
-        elif ending != ".png":
-            raise ValueError(
-                f"the ending of {path} stands for no format: a picture's file ends in .png or .exr"
-            )
-        elif not self._native.save_png(path, *part):
-            reason = "the scene has more than 1 MiB of text or 1000 settings"
-            warnings.warn(f"{reason}, so {path} does not carry it", stacklevel=2)
+        save = native.save_exr if is_exr(path) else native.save_png
+        if not save(self._native, path, *part):
+            warn_of_length(path)
 
     def probe(self, x: float, y: float) -> dict[str, Any]:
         """Follows the ray through a point of the picture, in pixels from its top left corner.
@@ -199,6 +193,10 @@ class Scene:
 
     def _key(self) -> tuple[str, tuple[str, ...], str]:
         return self._text, self._sets, self._name
+
+    def __dask_tokenize__(self) -> tuple[str, ...]:
+        """Returns what distinguishes scenes, from which Dask names the results of its tasks."""
+        return "pinhole.Scene", self._text, *self._sets, self._name
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _unpickled, self._key()

@@ -152,6 +152,19 @@ fn saved_pictures_have_the_bytes_that_the_program_writes() {
 }
 
 #[test]
+fn a_part_that_is_read_and_saved_again_is_still_a_part() {
+    let folder = Folder::with([("a.scn", &example_text("figure_9_9")[..])]);
+    for ending in ["png", "exr"] {
+        let size = "--set image.width=64 --set image.height=36";
+        folder.done(&format!("render a.scn {size} --shard 2/3 -o part.{ending}"));
+        let path = folder.path(&format!("part.{ending}"));
+        let written = fs::read(&path).unwrap();
+        Picture::open(&path).unwrap().save(&path).unwrap();
+        assert!(fs::read(&path).unwrap() == written, "{ending}");
+    }
+}
+
+#[test]
 fn a_changed_scene_is_in_its_picture() {
     let mut data = Scene::parse(&example_text("figure_9_9"))
         .unwrap()

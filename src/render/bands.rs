@@ -1,0 +1,56 @@
+//! Renders a part of a picture in bands of rows, one after another.
+
+use super::{Control, RenderError, Rendered, render_as_asked};
+use crate::{
+    area::Area,
+    film::{Pixel, reserve_memory},
+    sampling::Sampling,
+    tracer::World,
+};
+
+/// Greatest number of pixels of a picture that are in memory at once. Greater pictures are rendered
+/// and written in bands of rows, so that the size of a poster is limited by the disk. The pixels of
+/// a band take 12 to 50 MB. With smaller bands, threads would wait more often for each other at a
+/// band's end.
+const BAND_PIXELS: u32 = 1 << 22;
+
+/// Number of pixels above which a picture must fit into memory, although it is rendered in bands.
+/// It is that of a poster with sides of 2^18 pixels, which takes hours to render. More pixels are
+/// probably a mistyped size.
+const MISTYPED: u64 = 1 << 36;
+
+/// Renders a part of the picture as [`render_as_asked`] does, in bands of rows, from the top. Each
+/// band is rendered when it is requested, and comes with its area.
+///
+/// # Errors
+///
+/// Fails if the part has so many pixels that its size is probably mistyped, and does not fit into
+/// memory. A band fails as a render does.
+///
+/// # Panics
+///
+/// Panics if the sampling was made for a picture of another size.
+pub fn render_bands<'a, P: Pixel>(
+    world: &'a World,
+    sampling: &'a Sampling,
+    part: Area,
+    control: &'a Control,
+) -> Result<impl Iterator<Item = Result<(Area, Rendered<P>), RenderError>> + 'a, RenderError> {
+    if part.pixels() > MISTYPED {
+        reserve_memory(part.width, part.height, size_of::<P>() as u64)?;
+    }
+    let render = move |band| Ok((band, render_as_asked(world, sampling, band, control)?));
+    Ok(bands(part).map(render))
+}
+
+/// Returns the bands of rows in which a part of a picture is rendered, from the top.
+fn bands(part: Area) -> impl Iterator<Item = Area> {
+    let rows = (BAND_PIXELS / part.width.max(1)).max(1);
+    (0..part.height)
+        .step_by(rows as usize)
+        .map(move |top| Area {
+            y: part.y + top,
+            height: rows.min(part.height - top),
+            ..part
+        })
+}
