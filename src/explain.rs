@@ -12,6 +12,9 @@ pub const LANGUAGE: &str = include_str!("../grammar/language.md");
 /// The glossary of sampling, as Markdown: a section for each term and for each method.
 pub const SAMPLING: &str = include_str!("../grammar/sampling.md");
 
+/// The glossary of the camera, as Markdown: a section for each term.
+pub const CAMERA: &str = include_str!("../grammar/camera.md");
+
 /// Guide, as Markdown, for converting scenes of programs with left-handed coordinates or with z
 /// upwards.
 pub const LEFT_HANDED: &str = include_str!("../grammar/left_handed.md");
@@ -48,7 +51,15 @@ const OTHER_NAMES: &[(&str, &str)] = &[
     ("comment, comments", "text"),
     ("variable, constant", "definitions"),
     ("field, block, default", "blocks"),
-    ("mesh, wall, window, horizon", "objects"),
+    ("mesh", "objects: A mesh"),
+    ("wall", "objects: A wall"),
+    ("image plane, picture plane, projection plane", "view plane"),
+    ("projection", "perspective"),
+    ("line of sight", "ray"),
+    ("standard deviation, sigma", "variance"),
+    ("uncertainty, ±", "standard error"),
+    ("scrambling", "owen scrambling"),
+    ("error bound", "bound"),
     ("cube", "box"),
     ("ball", "sphere"),
     ("floor, plane", "checkerboard"),
@@ -62,7 +73,6 @@ const OTHER_NAMES: &[(&str, &str)] = &[
     ("metres, meters", "bad_number"),
     ("antialiasing", "samples"),
     ("strata, stratified, stratification", "stratum"),
-    ("monte_carlo", "monte carlo"),
     ("moire", "moiré"),
     ("jaggies, stairs, alias", "aliasing"),
     ("grain", "noise"),
@@ -80,10 +90,15 @@ pub fn other_names() -> impl Iterator<Item = (&'static str, &'static str)> {
     OTHER_NAMES.iter().flat_map(named)
 }
 
-/// Returns the section of the language's reference, or of the glossary of sampling, that has the
-/// heading `heading`, in any capitalization. Returns `None` if there is none.
+/// The documents with headings that are explained.
+const DOCUMENTS: [&str; 3] = [LANGUAGE, SAMPLING, CAMERA];
+
+/// Returns the section of the language's reference, or of a glossary, that has the heading
+/// `heading`, in any capitalization. Returns `None` if there is none.
 pub fn section(heading: &str) -> Option<&'static str> {
-    section_of(LANGUAGE, heading).or_else(|| section_of(SAMPLING, heading))
+    DOCUMENTS
+        .into_iter()
+        .find_map(|text| section_of(text, heading))
 }
 
 /// Returns the section of `text`, which is Markdown, with the heading `heading`, in any
@@ -128,9 +143,9 @@ pub fn part(heading: &str, words: &str) -> Option<String> {
     ))
 }
 
-/// Returns the headings of the sections of the reference and of the glossary of sampling.
+/// Returns the headings of the sections of the reference and of the glossaries.
 pub fn headings() -> impl Iterator<Item = &'static str> {
-    let lines = LANGUAGE.lines().chain(SAMPLING.lines());
+    let lines = DOCUMENTS.into_iter().flat_map(str::lines);
     lines.filter_map(|line| line.strip_prefix("## "))
 }
 

@@ -83,9 +83,16 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
         .rsplit_once('.')
         .filter(|(block, axis)| schema::block(block).is_none() && matches!(*axis, "x" | "y" | "z"));
     let asked = of_vector.map_or(trimmed, |_| "ball.x");
-    let mut others = explain::other_names();
-    let other = others.find(|(name, _)| name.eq_ignore_ascii_case(asked));
-    let meant = other.map_or(trimmed, |(_, meant)| meant);
+    // A shell needs quotes around `vanishing point`, so `vanishing_point` is the same.
+    let spaced = asked.replace(['_', '-'], " ");
+    let is_asked = |name: &str| {
+        [asked, &spaced]
+            .iter()
+            .any(|it| name.eq_ignore_ascii_case(it))
+    };
+    let other = explain::other_names().find(|(name, _)| is_asked(name));
+    let heading = explain::headings().find(|heading| is_asked(heading));
+    let meant = other.map(|(_, meant)| meant).or(heading).unwrap_or(trimmed);
     if meant == "left_handed" {
         return Ok(explain::LEFT_HANDED.into());
     }
@@ -153,7 +160,7 @@ fn list(headings: Headings) -> String {
             let _ = writeln!(text, "  {:width$}  {}", page.code, page.title());
         }
     }
-    text.push_str("\nThere are also `language`, the reference, each of its headings, such as `repetition`, a field of a block, such as `camera.up`, and `left_handed`, for scenes of programs whose z points away.\n");
+    text.push_str("\nThere are also `language`, the reference, each of its headings, such as `repetition`, a field of a block, such as `camera.up`, words such as `stratum`, `depth` or `vanishing_point`, and `left_handed`, for scenes of programs whose z points away.\n");
     text
 }
 
@@ -307,8 +314,11 @@ mod tests {
 
     #[test]
     fn the_reference_fits_terminals() {
-        let (_, sampling) = explain::SAMPLING.split_once("\n\n").unwrap();
-        let text = format!("{}\n{sampling}", explain::LANGUAGE);
+        let [sampling, camera] = [explain::SAMPLING, explain::CAMERA].map(|text| {
+            let (_, text) = text.split_once("\n\n").unwrap();
+            text
+        });
+        let text = format!("{}\n{sampling}\n{camera}", explain::LANGUAGE);
         for width in [20, 40, 60, 80, WIDEST] {
             let text = drawn(&text, width, Headings::Plain);
             let is_heading = |line: &str| explain::headings().any(|heading| heading == line);
@@ -365,6 +375,22 @@ mod tests {
                     assert!(page.matches("\n- ").count() < 2, "{page}");
                 }
             }
+        }
+        // A word of several parts may be written in three ways.
+        for parts in [
+            "vanishing point",
+            "field of view",
+            "view plane",
+            "monte carlo",
+        ] {
+            for between in ["_", "-"] {
+                let word = parts.replace(' ', between);
+                assert_eq!(page(&word).unwrap(), page(parts).unwrap(), "{word}");
+            }
+        }
+        // One word never prints the whole section about objects.
+        for word in ["window", "horizon", "wall", "mesh", "t", "pixel", "bound"] {
+            assert!(page(word).unwrap().lines().count() < 10, "{word}");
         }
         for (word, said) in [
             (

@@ -5,11 +5,10 @@ use glam::{DVec2, DVec3};
 
 use super::{
     canvas::{Canvas, WIDTH, number},
-    outside::{Outside, bounds3, draw_objects},
+    outside::{Outside, bounds3, draw_objects, visible_overlays},
 };
 use crate::{
     area::Area,
-    editor::viewport::{ShownObjects, overlays},
     inspect::inspect_camera,
     probe::{Probe, probe},
     projection::Projection,
@@ -27,9 +26,13 @@ const HEIGHT: f64 = 460.0;
 /// could become too small to be recognised.
 const FARTHEST: f64 = 15.0;
 
-/// Maximum number of objects that are drawn, not counting checkerboards. The first ones in the
-/// scene are drawn. With many more, the figure would be confusing.
+/// Maximum number of objects that are drawn, not counting checkerboards. These are the object that
+/// the ray meets and the first ones in the scene. With many more, the figure would be confusing.
 const MOST_OBJECTS: usize = 60;
+
+/// Maximum width and height, in SVG units, of a window that is too small to be recognised. The
+/// figure then says so.
+const TINY: f64 = 16.0;
 
 /// Approximate maximum number of lines on a checkerboard in each direction. If there are more
 /// squares, only every second line, or every third, and so on, is drawn. More lines would hide the
@@ -61,8 +64,11 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
 
     let mut points = vec![view.eye, window, end];
     points.extend(corners);
-    let shown = objects_within(scene, &view, reach, hit.as_ref().map(|(hit, _)| hit.object));
-    for (_, middle, radius) in &shown {
+    let met = hit.as_ref().map(|(hit, _)| hit.object);
+    let within = objects_within(scene, reach, met);
+    let is_behind = |(_, middle, radius): &Body| view.depth(*middle) + radius <= 0.0;
+    let (behind, ahead): (Vec<_>, Vec<_>) = within.iter().copied().partition(is_behind);
+    for (_, middle, radius) in &within {
         let corner =
             |i: u32| DVec3::from([1, 2, 4].map(|bit| if i & bit > 0 { *radius } else { -radius }));
         points.extend((0..8).map(|i| *middle + corner(i)));
@@ -87,13 +93,21 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     for line in boards {
         outside.line(&mut canvas, "faint", &line);
     }
-    let indices = shown.iter().map(|(index, ..)| *index).collect();
-    outside.objects(&mut canvas, scene, indices);
+    let indices = |bodies: &[Body]| bodies.iter().map(|(index, ..)| *index).collect();
+    outside.outlines(&mut canvas, "faint dash", scene, indices(&behind));
+    outside.objects(&mut canvas, scene, indices(&ahead));
+    // An object that is large compared with the figure is drawn only if the ray meets it.
+    let large = met.filter(|met| within.iter().all(|(index, ..)| index != met));
+    let large = large.filter(|_| hit.as_ref().is_some_and(|(hit, _)| is_near(hit)));
+    let is_board = |index: &usize| scene.objects[*index].shape.checkerboard().is_some();
+    let large: Vec<_> = large.into_iter().filter(|index| !is_board(index)).collect();
+    let drawn = within.len() + large.len();
+    outside.outlines(&mut canvas, "faint", scene, large);
     for corner in corners {
         outside.line(&mut canvas, "faint", &[view.eye, corner]);
     }
     // In the window, draws the outlines of the objects as the camera sees them.
-    let picture = overlays(scene, &ShownObjects::First(None));
+    let picture = visible_overlays(scene);
     let in_frame = |at: DVec2| view.at_depth(at.clamp(DVec2::ZERO, view.size), facts.d);
     draw_objects(
         &mut canvas,
@@ -127,14 +141,30 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     let distance = number(facts.d);
     let axis = outside.at(window);
     let tip = outside.at(window + view.ahead * arrow);
-    let [d_at, pixel_at, corner] =
-        [view.eye.midpoint(window), in_window, a].map(|it| outside.at(it));
+    let [d_at, pixel_at] = [view.eye.midpoint(window), in_window].map(|it| outside.at(it));
+    if let Some((_, middle, _)) = behind.first() {
+        let at = outside.at(*middle);
+        canvas.label("faint", [at, eye], "behind the eye");
+    }
+    let count = (0..scene.objects.len())
+        .filter(|index| !is_board(index))
+        .count();
+    if drawn < count {
+        canvas.note(format!("{drawn} of {count} objects are drawn."));
+    }
     canvas.label("green", [d_at; 2], format!("*d* = {distance}"));
     canvas.label("ink", [eye, axis], "eye");
     canvas.label("red", [pixel_at; 2], format!("pixel ({x}, {y})"));
-    canvas.label("blue", [corner, axis], "window");
+    let frame = corners.map(|corner| outside.at(corner));
+    let is_tiny = |corner: &DVec2| (*corner - frame[0]).abs().max_element() < TINY;
+    let name = if frame.iter().all(is_tiny) {
+        "window, too small to be seen here"
+    } else {
+        "window"
+    };
+    canvas.label_any("blue", &frame, axis, name);
     canvas.label("ink", [tip; 2], "view direction −*w*");
-    let met = match &hit {
+    let told = match &hit {
         Some((hit, object)) => {
             let name = object.name.as_deref().unwrap_or(object.shape.kind());
             let far = if is_near(hit) { "" } else { ", farther on" };
@@ -146,14 +176,14 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     if hit.as_ref().is_some_and(|(hit, _)| is_near(hit)) {
         canvas.dot("red", outside.at(end), 5.0);
     }
-    canvas.label("red", [outside.at(end); 2], &*met);
+    canvas.label("red", [outside.at(end); 2], &*told);
     canvas.finish_cropped(
         "A pinhole camera, seen from outside",
         &format!(
             "All rays leave the eye. The window lies at the distance d = {distance} along the view direction −w and is {} tall. \
             The ray through the middle of pixel ({x}, {y}) meets: {}. At the eye stand the axes u (the picture's right), v (its top) and w.",
             number(facts.view_height),
-            met.replace('*', "")
+            told.replace('*', "")
         ),
     )
 }
@@ -176,31 +206,22 @@ fn pixel_of_largest(scene: &Scene) -> [u32; 2] {
     [around.x + around.width / 2, around.y + around.height / 2]
 }
 
-/// Returns the objects to draw, at most [`MOST_OBJECTS`], without checkerboards. Each has its
-/// index, and the centre and the radius of its bounding sphere.
-///
-/// Objects whose radius or distance from the eye is large compared with `reach` are left out.
-/// Objects behind the eye are left out, too, except the one with the index `hit`.
-fn objects_within(
-    scene: &Scene,
-    view: &Projection,
-    reach: f64,
-    hit: Option<usize>,
-) -> Vec<(usize, DVec3, f64)> {
-    let around = scene
-        .objects
-        .iter()
-        .enumerate()
-        .filter_map(|(index, object)| {
-            let (middle, radius) = object.shape.bounding_sphere()?;
-            Some((index, middle, radius))
-        });
-    let is_within = |&(index, middle, radius): &(usize, DVec3, f64)| {
-        let is_in_front = view.depth(middle) + radius > 0.0;
-        let is_small = radius < reach && middle.distance(view.eye) + radius < 1.5 * reach;
-        is_small && (is_in_front || hit == Some(index))
+/// Index of an object, and the centre and the radius of its bounding sphere.
+type Body = (usize, DVec3, f64);
+
+/// Returns the objects to draw, at most [`MOST_OBJECTS`], without checkerboards. Objects whose
+/// radius or distance from the eye is large compared with `reach` are left out. The object with the
+/// index `first` comes first.
+fn objects_within(scene: &Scene, reach: f64, first: Option<usize>) -> Vec<Body> {
+    let others = (0..scene.objects.len()).filter(|index| Some(*index) != first);
+    let bodies = first.into_iter().chain(others).filter_map(|index| {
+        let (middle, radius) = scene.objects[index].shape.bounding_sphere()?;
+        Some((index, middle, radius))
+    });
+    let is_small = |&(_, middle, radius): &Body| {
+        radius < reach && middle.distance(scene.camera.eye) + radius < 1.5 * reach
     };
-    around.filter(is_within).take(MOST_OBJECTS).collect()
+    bodies.filter(is_small).take(MOST_OBJECTS).collect()
 }
 
 /// Returns lines between the squares of the checkerboards, within the area of the figure's points,

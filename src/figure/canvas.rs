@@ -34,7 +34,7 @@ text{font:18px Helvetica,Arial,'DejaVu Sans',sans-serif;fill:currentColor;stroke
 tspan{font-style:italic}.strong{font-weight:bold}\
 path{fill:none;stroke:currentColor;stroke-width:2;stroke-linejoin:round;stroke-linecap:round}\
 circle{fill:currentColor}.seen{stroke:currentColor;stroke-width:1.5}\
-.fill{stroke:none;fill-opacity:.4}.swatch{stroke:none}\
+.fill{stroke:none;fill-opacity:.4}.tint{fill:currentColor;fill-opacity:.22}.swatch{stroke:none}\
 .paper{fill:#fff}.ink{color:#1b1f24}.faint{color:#59636e}path.faint{stroke-width:.8;stroke-opacity:.5}path.cell{stroke-width:1.6;stroke-opacity:.8}\
 .blue{color:#0067a3}.red{color:#b34700}.green{color:#00735a}.dash{stroke-dasharray:6 5}\
 @media(prefers-color-scheme:dark){.paper{fill:#15181d}.fill{fill-opacity:.65}text{stroke:#15181d}.ink{color:#eceff4}.faint{color:#a3adb8}\
@@ -49,10 +49,9 @@ const MARGIN: f64 = 12.0;
 /// steps to leave a segment free. With a smaller cost, labels would cover more marks.
 const MARK: f64 = 40.0;
 
-/// Cost of a label for each diagonal of a filled polygon that it covers. A polygon has up to about
-/// four diagonals, which represent its area. Moving a label one step away from its point costs 6,
-/// which is less, so a label leaves the polygon if there is free space near it.
-const FILL: f64 = 7.0;
+/// Cost of a label for each filled polygon that it covers in part. Moving a label one step away
+/// from its point costs 6, so a label leaves the polygon if there is free space near it.
+const FILL: f64 = 30.0;
 
 /// A drawing, to which marks and labels are added.
 pub struct Canvas {
@@ -62,9 +61,20 @@ pub struct Canvas {
     marks: String,
     /// Line segments that labels should not cover, each with the cost of covering it.
     obstacles: Vec<([DVec2; 2], f64)>,
-    /// Labels of points. Each has a CSS class, the point, the preferred direction from the point to
-    /// the label, and the text.
-    labels: Vec<(&'static str, DVec2, DVec2, String)>,
+    /// Convex polygons that labels should not cover.
+    fills: Vec<Vec<DVec2>>,
+    labels: Vec<Label>,
+    /// Text below the drawing.
+    note: String,
+}
+
+/// A text beside a point.
+struct Label {
+    class: &'static str,
+    /// Points of which the label may name any one. Each has the preferred direction from the point
+    /// to the label.
+    points: Vec<[DVec2; 2]>,
+    text: String,
 }
 
 impl Canvas {
@@ -75,7 +85,9 @@ impl Canvas {
             rows: [height, 0.0],
             marks: String::new(),
             obstacles: Vec::new(),
+            fills: Vec::new(),
             labels: Vec::new(),
+            note: String::new(),
         }
     }
 
@@ -87,13 +99,15 @@ impl Canvas {
         self.path(class, points, "");
     }
 
-    /// Fills a polygon with a colour of the scene. Labels will avoid it if possible.
+    /// Fills a convex polygon with a colour of the scene. Labels will avoid it if possible.
     pub fn fill(&mut self, class: &str, color: Color, points: &[DVec2]) {
-        let half = points.len() / 2;
-        let diagonals = (0..half).step_by((half / 4).max(1));
-        let diagonals = diagonals.map(|at| ([points[at], points[at + half]], FILL));
-        self.obstacles.extend(diagonals);
+        self.fills.push(points.to_vec());
         self.path(class, points, &format!(" style=\"fill:{color}\""));
+    }
+
+    /// Draws the outline of a polygon and tints its inside with the same colour.
+    pub fn tint(&mut self, class: &str, points: &[DVec2]) {
+        self.path(&format!("{class} tint"), points, "");
     }
 
     fn path(&mut self, class: &str, points: &[DVec2], more: &str) {
@@ -149,8 +163,28 @@ impl Canvas {
     /// Adds a label for the point `at`. It is preferably placed on the side that faces away from
     /// `from`. In the text, words between asterisks are italic.
     pub fn label(&mut self, class: &'static str, [at, from]: [DVec2; 2], text: impl Into<String>) {
-        let away = (at - from).normalize_or_zero();
-        self.labels.push((class, at, away, text.into()));
+        self.label_any(class, &[at], from, text);
+    }
+
+    /// Adds a label for that one of the points `points` at which it fits best.
+    pub fn label_any(
+        &mut self,
+        class: &'static str,
+        points: &[DVec2],
+        from: DVec2,
+        text: impl Into<String>,
+    ) {
+        let with_side = |&at: &DVec2| [at, (at - from).normalize_or_zero()];
+        self.labels.push(Label {
+            class,
+            points: points.iter().map(with_side).collect(),
+            text: text.into(),
+        });
+    }
+
+    /// Writes a text below a drawing that is cropped.
+    pub fn note(&mut self, text: impl Into<String>) {
+        self.note = text.into();
     }
 
     /// Writes a text at a fixed position. `anchor` is `start`, `middle` or `end`, and says which
@@ -181,6 +215,11 @@ impl Canvas {
     /// cropped. The title and the description are for screen readers.
     pub fn finish_cropped(mut self, title: &str, description: &str) -> String {
         self.place_labels();
+        if !self.note.is_empty() {
+            let below = DVec2::new(MARGIN, self.rows[1] + LETTER.y + MARGIN);
+            let note = std::mem::take(&mut self.note);
+            self.text("faint", "start", below, &note);
+        }
         let [top, bottom] = self.rows;
         self.file([top - MARGIN, bottom + MARGIN], title, description)
     }
@@ -207,16 +246,18 @@ impl Canvas {
     /// Writes each label at the place near its point where the cost is least.
     fn place_labels(&mut self) {
         let mut taken: Vec<[DVec2; 2]> = Vec::new();
-        for (class, at, away, text) in std::mem::take(&mut self.labels) {
+        for label in std::mem::take(&mut self.labels) {
+            let Label {
+                class,
+                points,
+                text,
+            } = label;
             let letters = text.chars().filter(|letter| *letter != '*').count();
             let size = DVec2::new(letters as f64, 1.0) * LETTER;
-            let mut best = (f64::INFINITY, at, DVec2::ZERO);
-            for (far, gap) in [9.0, 18.0, 30.0, 46.0, 66.0].into_iter().enumerate() {
-                for (turn, side) in SIDES.into_iter().enumerate() {
-                    let side = DVec2::from(side);
-                    let middle = at + side * (size / 2.0 + gap);
+            let mut best = (f64::INFINITY, DVec2::ZERO, DVec2::ZERO);
+            for [at, away] in points {
+                for (middle, side, preferred) in places(at, away, size) {
                     let rectangle = [middle - size / 2.0, middle + size / 2.0];
-                    let preferred = 6.0 * far as f64 + 0.1 * turn as f64 - 8.0 * side.dot(away);
                     let cost = self.cost(rectangle, &taken) + preferred;
                     if cost < best.0 {
                         best = (cost, middle, side);
@@ -237,7 +278,7 @@ impl Canvas {
 
     /// Returns the cost of placing a label in `rectangle`. It is highest if the label would extend
     /// beyond the drawing, lower if it would cover labels (`taken`), and lowest if it would cover
-    /// segments of marks (`obstacles`).
+    /// segments of marks (`obstacles`) or filled polygons.
     fn cost(&self, rectangle: [DVec2; 2], taken: &[[DVec2; 2]]) -> f64 {
         let [min, max] = rectangle;
         let is_outside = min.cmplt(DVec2::splat(4.0)).any() || max.cmpgt(self.size - 4.0).any();
@@ -249,8 +290,35 @@ impl Canvas {
             .iter()
             .filter(|(ends, _)| clip(*ends, rectangle).is_some());
         let crossed: f64 = crossed.map(|(_, cost)| cost).sum();
-        1e7 * f64::from(u8::from(is_outside)) + 1e5 * covered.count() as f64 + crossed
+        let filled = self.fills.iter().filter(|fill| covers(rectangle, fill));
+        let filled = FILL * filled.count() as f64;
+        1e7 * f64::from(u8::from(is_outside)) + 1e5 * covered.count() as f64 + crossed + filled
     }
+}
+
+/// Returns the places of a label of the size `size` near the point `at`: for each its middle, its
+/// direction from the point, and a cost, which is least near the point in the direction `away`.
+fn places(at: DVec2, away: DVec2, size: DVec2) -> impl Iterator<Item = (DVec2, DVec2, f64)> {
+    let gaps = [9.0, 18.0, 30.0, 46.0, 66.0].into_iter().enumerate();
+    gaps.flat_map(move |(far, gap)| {
+        SIDES.into_iter().enumerate().map(move |(turn, side)| {
+            let side = DVec2::from(side);
+            let cost = 6.0 * far as f64 + 0.1 * turn as f64 - 8.0 * side.dot(away);
+            (at + side * (size / 2.0 + gap), side, cost)
+        })
+    })
+}
+
+/// Returns whether a rectangle and a convex polygon have a point in common.
+fn covers(rectangle: [DVec2; 2], polygon: &[DVec2]) -> bool {
+    let ends = || polygon.iter().zip(polygon.iter().cycle().skip(1));
+    let is_crossed = ends().any(|(a, b)| clip([*a, *b], rectangle).is_some());
+    let sides = ends().map(|(a, b)| (*b - *a).perp_dot(rectangle[0] - *a));
+    let [least, most] = sides.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], side| {
+        [least.min(side), most.max(side)]
+    });
+    // A point is inside if it lies on the same side of every edge.
+    is_crossed || !polygon.is_empty() && (least >= 0.0 || most <= 0.0)
 }
 
 /// Directions from a point to its label. If several are equally good, the first one is used.

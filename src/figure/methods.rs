@@ -128,6 +128,49 @@ pub fn strata(canvas: &mut Canvas, method: Method, n: u64, corner: DVec2, side: 
     canvas.line("ink", &[&frame[..], &frame[..1]].concat());
 }
 
+/// Tints one of the strata of each kind: a cell, a column and a row, whichever the method has.
+/// Returns the CSS class and the name of each.
+pub fn marked(
+    canvas: &mut Canvas,
+    method: Method,
+    n: u64,
+    corner: DVec2,
+    side: f64,
+) -> Vec<(&'static str, &'static str)> {
+    let tilings = if n > 1 { tilings(method, n) } else { vec![] };
+    let mut marked = Vec::new();
+    for tiling in &tilings {
+        let height = tiling
+            .rows
+            .first()
+            .map_or(0.0, |cells| *cells as f64 / n as f64);
+        // Three places apart from each other: at the top left, at the right, and at the bottom.
+        let (stratum, from, to) = match (tiling.is_columns(), tiling.is_rows()) {
+            (true, _) => {
+                let stratum = ("blue", "a column");
+                (stratum, DVec2::new(1.0 - 1.0 / n as f64, 0.0), DVec2::ONE)
+            }
+            (_, true) => {
+                let stratum = ("green", "a row");
+                (stratum, DVec2::new(0.0, 1.0 - 1.0 / n as f64), DVec2::ONE)
+            }
+            _ => {
+                let width = 1.0 / tiling.rows[0] as f64;
+                (("red", "a cell"), DVec2::ZERO, DVec2::new(width, height))
+            }
+        };
+        // Of several grids with cells, the first has the most nearly square ones.
+        if marked.contains(&stratum) {
+            continue;
+        }
+        let [from, to] = [from, to].map(|at| corner + at * side);
+        let around = [from, from.with_x(to.x), to, from.with_y(to.y), from];
+        canvas.tint(stratum.0, &around);
+        marked.push(stratum);
+    }
+    marked
+}
+
 /// Returns the lines between the cells of a grid that divides the unit square.
 fn lines(tiling: &Tiling) -> Vec<[[f64; 2]; 2]> {
     let n = tiling.rows.iter().sum::<u64>() as f64;

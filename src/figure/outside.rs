@@ -16,6 +16,7 @@ use crate::{
     math::Angle,
     projection::Projection,
     scene::{Camera, Image, Lens, Scene, Shape, View},
+    seen::{Visibility, seen},
 };
 
 /// Distance of the observer from the middle of the shown points, as a multiple of the radius of a
@@ -97,16 +98,40 @@ impl Outside {
 
     /// Draws the outlines of the objects with the given indices, filled with the objects' colours.
     pub fn objects(&self, canvas: &mut Canvas, scene: &Scene, indices: Vec<usize>) {
+        let overlays = self.overlays(scene, indices);
+        let place = |at: DVec2| at * self.scale + self.offset;
+        draw_objects(canvas, scene, &overlays, place, self.panel);
+    }
+
+    /// Draws the outlines of the objects with the given indices in the style `class`.
+    pub fn outlines(&self, canvas: &mut Canvas, class: &str, scene: &Scene, indices: Vec<usize>) {
+        let place = |at: &DVec2| *at * self.scale + self.offset;
+        for outline in self.overlays(scene, indices).objects {
+            for line in outline.lines {
+                let line = thinned(line.iter().map(place).collect());
+                draw_within(canvas, class, &line, self.panel);
+            }
+        }
+    }
+
+    fn overlays(&self, scene: &Scene, indices: Vec<usize>) -> Overlays {
         let scene = Scene {
             camera: self.camera,
             image: self.image,
             sampler: scene.sampler,
             objects: Arc::clone(&scene.objects),
         };
-        let overlays = overlays(&scene, &ShownObjects::Only(indices));
-        let place = |at: DVec2| at * self.scale + self.offset;
-        draw_objects(canvas, &scene, &overlays, place, self.panel);
+        overlays(&scene, &ShownObjects::Only(indices))
     }
+}
+
+/// Returns the drawings over the scene's picture, with the outlines of those objects of which
+/// something is seen.
+pub fn visible_overlays(scene: &Scene) -> Overlays {
+    let (seen, _) = seen(scene);
+    let is_seen = |(index, seen)| matches!(seen, Visibility::Part(..)).then_some(index);
+    let indices = seen.into_iter().enumerate().filter_map(is_seen).collect();
+    overlays(scene, &ShownObjects::Only(indices))
 }
 
 /// Draws the outlines of the objects in a picture, filled with their colours. The function `place`

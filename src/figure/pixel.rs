@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use super::{
     canvas::{Canvas, length},
-    methods::{most, strata},
+    methods::{marked, most, strata},
 };
 use crate::{
     area::Area,
@@ -66,6 +66,13 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
         CORNER,
         SIDE,
     );
+    let marked = marked(
+        &mut canvas,
+        scene.sampler.method,
+        seen.len() as u64,
+        CORNER,
+        SIDE,
+    );
     let radius = (30.0 / (seen.len().max(1) as f64).sqrt()).clamp(3.0, 9.0);
     for (at, color) in &seen {
         canvas.seen(*color, CORNER + *at * SIDE, radius);
@@ -82,10 +89,21 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
         below,
         &format!("pixel ({x}, {y}), {method}, {count}"),
     );
+    // The names of the marked strata, in their colours, stand between the colours and their mean.
+    let top = 116.0 + 32.0 * colors.len().min(COLORS) as f64;
+    for (at, &(class, stratum)) in marked.iter().enumerate() {
+        let place = DVec2::new(400.0 + 100.0 * at as f64, top - 22.0);
+        canvas.text(class, "start", place, stratum);
+    }
+    let marked: Vec<_> = marked.iter().map(|(_, stratum)| *stratum).collect();
+    let marked = match marked[..] {
+        [] => String::new(),
+        _ => format!(", of which are tinted: {}", marked.join(", ")),
+    };
 
     let columns = [570.0, 664.0];
-    let cell = |canvas: &mut Canvas, column: usize, y: f64, text: &str| {
-        canvas.text("ink", "end", DVec2::new(columns[column], y), text);
+    let cell = |canvas: &mut Canvas, column: usize, line: f64, text: &str| {
+        canvas.text("ink", "end", DVec2::new(columns[column], line), text);
     };
     cell(&mut canvas, 0, 44.0, "samples");
     cell(&mut canvas, 1, 44.0, "exact");
@@ -96,29 +114,28 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
         let name = name(scene, &world, at);
         let count = seen.iter().filter(|(_, seen)| *seen == color).count();
         let share = format!("{} %", crate::numbers::rounded(100.0 * share, 0.1));
-        let y = 84.0 + 32.0 * row as f64;
-        canvas.seen(color, DVec2::new(408.0, y - 6.0), 8.0);
-        canvas.text("ink", "start", DVec2::new(424.0, y), &name);
+        let line = 84.0 + 32.0 * row as f64;
+        canvas.seen(color, DVec2::new(408.0, line - 6.0), 8.0);
+        canvas.text("ink", "start", DVec2::new(424.0, line), &name);
         let counted = if seen.is_empty() {
             "–".to_owned()
         } else {
             count.to_string()
         };
-        cell(&mut canvas, 0, y, &counted);
-        cell(&mut canvas, 1, y, &share);
+        cell(&mut canvas, 0, line, &counted);
+        cell(&mut canvas, 1, line, &share);
         told.push(format!(
             "{name} ({color}): {count} samples, exactly {share}"
         ));
     }
-    let y = 116.0 + 32.0 * colors.len().min(COLORS) as f64;
-    canvas.text("ink", "start", DVec2::new(400.0, y + 46.0), "mean");
-    for (x, color) in [(472.0, mean), (568.0, exact)] {
+    canvas.text("ink", "start", DVec2::new(400.0, top + 46.0), "mean");
+    for (left, color) in [(472.0, mean), (568.0, exact)] {
         let more = format!(" style=\"fill:{color}\"");
-        canvas.raw_path("swatch", &format!("M{x} {y}h96v76h-96z"), &more);
-        let below = DVec2::new(x + 48.0, y + 100.0);
+        canvas.raw_path("swatch", &format!("M{left} {top}h96v76h-96z"), &more);
+        let below = DVec2::new(left + 48.0, top + 100.0);
         canvas.text("ink", "middle", below, &color.to_string());
     }
-    canvas.raw_path("faint", &format!("M472 {y}h192v76h-192z"), "");
+    canvas.raw_path("faint", &format!("M472 {top}h192v76h-192z"), "");
     let channels = mean.to_bytes().into_iter().zip(exact.to_bytes());
     let off = channels
         .map(|(a, b)| a.abs_diff(b))
@@ -128,13 +145,13 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
         0 => "equal in 8 bits".to_owned(),
         off => format!("off by {off} of 255"),
     };
-    canvas.text("ink", "end", DVec2::new(columns[1], y + 132.0), &off);
+    canvas.text("ink", "end", DVec2::new(columns[1], top + 132.0), &off);
     let told = told.join("; ");
     Ok(canvas.finish(
         "One pixel and its samples",
         &format!(
-            "Pixel ({x}, {y}) has {count} by the method {method}; lines show the strata, each with one sample. Seen there: {told}. \
-            The mean of the samples is {mean}, the exact mean {exact}: {off}."
+            "Pixel ({x}, {y}) has {count} by the method {method}; lines show the strata, each with one sample{marked}. Seen there: {told}. \
+            The mean of the samples, in linear light, is {mean}, the exact mean {exact}: {off}."
         ),
     ))
 }

@@ -4,10 +4,9 @@ use glam::DVec2;
 
 use super::{
     canvas::{Canvas, WIDTH, number},
-    outside::{draw_objects, draw_within, fit},
+    outside::{draw_objects, draw_within, fit, visible_overlays},
 };
 use crate::{
-    editor::viewport::{ShownObjects, overlays},
     math::Angle,
     projection::Projection,
     scene::{Camera, Scene},
@@ -33,7 +32,7 @@ pub fn draw(scene: &Scene) -> String {
         &format!(
             "On the left the picture's frame before the roll, dashed, with u and v, and after it, with u′ and v′, seen from the eye: \
             a roll of {degrees} degrees turns the frame clockwise if it is positive, so that its right side dips. \
-            On the right the picture in its frame: the content has turned the other way."
+            On the right the picture in its frame, as outlines of the objects that are seen: the content has turned the other way."
         ),
     )
 }
@@ -73,7 +72,7 @@ fn before_and_after(canvas: &mut Canvas, scene: &Scene) {
         camera: level_camera,
         ..scene.clone()
     };
-    let found = overlays(&scene, &ShownObjects::First(None));
+    let found = visible_overlays(&scene);
     draw_objects(canvas, &scene, &found, place, panel);
     if let Some(horizon) = found.horizon {
         draw_within(canvas, "faint", &horizon.map(place), panel);
@@ -117,7 +116,7 @@ fn before_and_after(canvas: &mut Canvas, scene: &Scene) {
 
 /// Draws the rolled picture upright, as a user sees it.
 fn picture(canvas: &mut Canvas, scene: &Scene) {
-    let found = overlays(scene, &ShownObjects::First(None));
+    let found = visible_overlays(scene);
     let size = DVec2::from(found.size.map(f64::from));
     let room = [
         DVec2::new(424.0, 24.0),
@@ -140,5 +139,5 @@ fn picture(canvas: &mut Canvas, scene: &Scene) {
     ];
     canvas.line("blue", &frame);
     let below = DVec2::new(min.midpoint(max).x, max.y + 26.0);
-    canvas.text("blue", "middle", below, "the picture");
+    canvas.text("blue", "middle", below, "the picture’s outlines");
 }

@@ -203,6 +203,26 @@ pub fn rmse(a: &Film, b: &Film) -> Result<f64, SizesDiffer> {
 ///
 /// The sizes differ, or the tolerance has fewer error bounds than the pictures have pixels.
 pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, TooLarge> {
+    heat_map_up_to(STEPS, a, b, tolerance)
+}
+
+/// Draws a heat map as [`heat_map`] does, but white stands for `white` steps of 8-bit sRGB, so that
+/// small differences are seen, too.
+///
+/// # Errors
+///
+/// There is not enough memory.
+///
+/// # Panics
+///
+/// Panics as [`heat_map`] does.
+#[doc(hidden)]
+pub fn heat_map_up_to(
+    white: f64,
+    a: &Film,
+    b: &Film,
+    tolerance: Tolerance,
+) -> Result<Film, TooLarge> {
     if let Err(error) = SizesDiffer::unless_equal(a, b) {
         panic!("{error}");
     }
@@ -211,7 +231,7 @@ pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, TooLar
     for (at, ((&p, &q), pixel)) in pairs.zip(map.pixels_mut()).enumerate() {
         let (_, most) = difference(p, q);
         if most > tolerance.steps + SLACK + tolerance.slack(at) {
-            *pixel = heat(most);
+            *pixel = heat(most / white);
         }
     }
     Ok(map)
@@ -221,10 +241,10 @@ pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, TooLar
 pub const HEAT_LEGEND: &str =
     "black: within the tolerance; red: 85 steps of 255; yellow: 170; white: 255 (linear)";
 
-/// Returns the colour of a heat map, in linear light, for a difference of `steps` steps of 8-bit
-/// sRGB.
-fn heat(steps: f64) -> [f64; 3] {
-    let t = 3.0 * steps / STEPS;
+/// Returns the colour of a heat map, in linear light, for a difference. A difference of 1 is drawn
+/// white.
+fn heat(difference: f64) -> [f64; 3] {
+    let t = 3.0 * difference;
     [t, t - 1.0, t - 2.0].map(|encoded| crate::color::srgb_to_linear(encoded.clamp(0.0, 1.0)))
 }
 

@@ -48,7 +48,8 @@ pub use self::png::{NotOurs, SIGNATURE, read_part, read_recipe, write_png, write
 pub use self::recipe::{OVERRIDES_LIMIT, Part, Recipe, TEXT_LIMIT};
 pub use self::{
     compare::{
-        CHANNELS, Comparison, HEAT_LEGEND, Largest, SizesDiffer, Tolerance, compare, heat_map, rmse,
+        CHANNELS, Comparison, HEAT_LEGEND, Largest, SizesDiffer, Tolerance, compare, heat_map,
+        heat_map_up_to, rmse,
     },
     memory::TooLarge,
     picture::{Coding, Opacity, Picture, Rounding},

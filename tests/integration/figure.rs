@@ -151,6 +151,46 @@ fn texts_lie_in_the_figure_and_none_upon_another() {
     assert!(count > 500, "{count}");
 }
 
+/// Tests that the description, which screen readers read, names the pixel that is drawn.
+#[test]
+fn a_figure_says_what_it_draws() {
+    for sets in [&[][..], &["image.width=1", "image.height=1"]] {
+        let svg = drawn("figure_9_9", Kind::Pixel, sets).unwrap();
+        let (_, rest) = svg.split_once("Pixel (").unwrap();
+        let (pixel, _) = rest.split_once(')').unwrap();
+        assert!(svg.contains(&format!(">pixel ({pixel}), ")), "{svg}");
+    }
+}
+
+#[test]
+fn the_figure_of_the_camera_always_has_the_object_that_the_ray_meets() {
+    // The triangle comes after more objects than a figure has. One ball is behind the eye.
+    let scene = read(
+        "camera { eye (0, 1, 5) lookat (0, 1, 0) } sphere Behind { center (0, 1, 8) radius 0.5 }
+sphere for i < 100 { center (i / 20 - 2.5, 3, 0) radius 0.1 } triangle Sail { centroid (0, 1, 0) normal (0, 0, 1) color red }",
+    );
+    let figure = figure(&scene, Kind::Camera, Choice::default()).unwrap();
+    let texts: Vec<String> = texts(&figure).into_iter().map(|(text, _)| text).collect();
+    for text in [
+        "Sail, t = 5.01",
+        "behind the eye",
+        "60 of 102 objects are drawn.",
+    ] {
+        assert!(texts.iter().any(|it| it == text), "{text}: {texts:?}");
+    }
+    // The sail is drawn twice: in space, and on the window.
+    assert_eq!(figure.matches("fill:#ff0000").count(), 2);
+}
+
+#[test]
+fn a_window_that_is_too_small_to_be_seen_is_said_to_be() {
+    let figure = drawn("figure_9_9", Kind::Camera, &["camera.d=1000"]).unwrap();
+    assert!(
+        figure.contains(">window, too small to be seen here<"),
+        "{figure}"
+    );
+}
+
 #[test]
 fn every_scene_has_figures_that_are_drawn_in_finite_numbers() {
     for numbers in [Numbers::MultiplesOf(0.5), Numbers::Wild(30)] {

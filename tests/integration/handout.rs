@@ -11,7 +11,8 @@ use pulldown_cmark::{Event, Options, Parser, Tag, html};
 
 use crate::snapshot::assert_file;
 
-/// Files of the handout in the order in which they should be read.
+/// Files of the handout in the order in which they should be read. The answers are for teachers and
+/// not among them.
 const PAGES: [&str; 7] = [
     "README",
     "camera",
@@ -72,8 +73,8 @@ fn the_page_is_that_of_the_files() {
 fn the_card_is_that_of_the_schema() {
     let mut card = String::from(
         "# The card\n\n\
-        Every block with its fields. Bold fields must be given; a value is what stands where nothing is given; of fields that \
-        `or` joins one way is taken. Lengths are in metres, angles end in `deg` or `rad`, y points up.\n\n\
+        Every block with its fields. Bold fields must be given. Italic fields belong to ways of saying one thing: of the ways that \
+        `or` joins, exactly one must be given; if none is italic, at most one. A value is what stands where nothing is given. Lengths are in metres, angles end in `deg` or `rad`, y points up.\n\n\
         | block | fields |\n| --- | --- |\n",
     );
     for block in BLOCKS {

@@ -14,10 +14,11 @@ use crate::{
 };
 
 /// Documents whose `console` blocks are run and whose `scn` blocks are checked.
-const DOCUMENTS: [&str; 11] = [
+const DOCUMENTS: [&str; 12] = [
     "README.md",
     "docs/accuracy.md",
     "docs/commands.md",
+    "docs/handout/answers.md",
     "docs/handout/camera.md",
     "docs/handout/error.md",
     "docs/handout/pixel.md",
@@ -58,16 +59,15 @@ fn fresh_folder() -> Folder {
     folder
 }
 
-/// Returns the text of a document with the current outputs of its commands.
-fn with_real_outputs(text: &str) -> String {
-    let folder = fresh_folder();
+/// Returns the text of a document with the current outputs of its commands, which run in `folder`.
+fn with_real_outputs(text: &str, folder: &Folder) -> String {
     let mut real = text.to_owned();
     let blocks = fenced(text, "console");
     assert!(!blocks.is_empty(), "a document shows commands");
     for block in blocks {
         assert!(block.starts_with("$ "), "{block}");
         let commands = block.lines().filter_map(|line| line.strip_prefix("$ "));
-        let happened = commands.map(|command| format!("$ {command}\n{}", run(command, &folder)));
+        let happened = commands.map(|command| format!("$ {command}\n{}", run(command, folder)));
         real = real.replace(block, &happened.collect::<String>());
     }
     real
@@ -76,7 +76,29 @@ fn with_real_outputs(text: &str) -> String {
 #[test]
 fn the_commands_print_what_the_documents_say() {
     for document in DOCUMENTS {
-        assert_file(&root().join(document), &with_real_outputs(&read(document)));
+        let (text, folder) = (read(document), fresh_folder());
+        assert_file(&root().join(document), &with_real_outputs(&text, &folder));
+        if document.starts_with("docs/handout/") {
+            let pictures = root().join(document);
+            assert_pictures(pictures.parent().unwrap(), &text, &folder);
+        }
+    }
+}
+
+/// Asserts that the pictures that a document shows are those that its commands make. A picture that
+/// no command makes, such as one of another document, is passed over.
+fn assert_pictures(beside: &Path, text: &str, folder: &Folder) {
+    let shown = text.split("![").skip(1).filter_map(|image| {
+        let (_, rest) = image.split_once("](")?;
+        rest.split(')').next()
+    });
+    for name in shown.filter(|name| folder.path(name).exists()) {
+        let (made, kept) = (folder.read(name), beside.join(name));
+        if std::env::var_os("PINHOLE_BLESS").is_some() {
+            fs::write(&kept, &made).unwrap();
+        }
+        let kept = fs::read(&kept).unwrap_or_default();
+        assert!(made == kept, "{name} is not what its command makes");
     }
 }
 

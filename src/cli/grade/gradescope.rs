@@ -15,41 +15,38 @@ use crate::{
 };
 
 /// Returns the content of `results.json` for a student. Each criterion, such as the camera or an
-/// object, is a test in Gradescope. Without `--points`, each test counts one point. If the picture
-/// is wrong for unknown reasons, no scores are written, so that the teacher decides.
+/// object, is a test in Gradescope. Without `--points`, each test counts one point. With it, the
+/// points are those of the whole, and a test only passes or fails: a mistake may cost more than an
+/// equal share of the points, so the sum of such shares would not be the score. If the picture is
+/// wrong for unknown reasons, no scores are written, so that the teacher decides.
 pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>) -> Value {
     let Ok(judged) = one.best() else {
         return whole(one, None, Vec::new());
     };
     let is_known = judged.verdict.kind != Kind::Unknown;
-    let criteria = criteria(scene);
-    let shares = shares(&criteria, points);
-    let mut scores = shares.clone();
     let mistakes = &judged.verdict.mistakes;
-    let off = points.map(|points| points.taken_off(judged));
-    for (at, mistake) in mistakes.iter().enumerate() {
-        let of = criterion(mistake, scene);
-        if let Some(test) = criteria.iter().position(|(one, _)| *one == of) {
-            // Without `--points`, any mistake takes all points of its test.
-            let off = off.as_ref().map_or(scores[test], |off| off[at]);
-            scores[test] = (scores[test] - off).max(0.0);
-        }
-    }
-    let tests = criteria.iter().enumerate().map(|(at, (of, name))| {
-        let is_about = |mistake: &&NamedMistake| criterion(mistake, scene) == *of;
+    let mut passed = 0;
+    let tests = criteria(scene).into_iter().map(|(of, name)| {
+        let is_about = |mistake: &&NamedMistake| criterion(mistake, scene) == of;
         let about: Vec<&NamedMistake> = mistakes.iter().filter(is_about).collect();
         let output = about
             .iter()
             .map(|one| format!("{}\n{}\n", one.message, one.help));
         let output: String = output.collect();
         let mut test = json!({
-            "name": visible(name),
-            "max_score": shares[at],
+            "name": visible(&name),
             "output": visible(&output),
             "visibility": "visible",
         });
+        let score = u32::from(about.is_empty());
+        passed += score;
+        if points.is_none() {
+            test["max_score"] = json!(1.0);
+        }
+        if points.is_none() && is_known {
+            test["score"] = json!(f64::from(score));
+        }
         if is_known {
-            test["score"] = json!(scores[at]);
             test["status"] = json!(if about.is_empty() { "passed" } else { "failed" });
         }
         test
@@ -57,7 +54,7 @@ pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>)
     let tests = tests.collect();
     let score = match points {
         Some(points) => points.score(judged),
-        None => is_known.then(|| scores.iter().sum()),
+        None => is_known.then(|| f64::from(passed)),
     };
     whole(one, score, tests)
 }
@@ -99,24 +96,6 @@ fn criteria(scene: &Scene) -> Vec<(Criterion, String)> {
         (Criterion::Hits, "hits".to_owned()),
     ]);
     all
-}
-
-/// Returns the maximum score of each test. An object's test gets the points that the file of
-/// `--points` gives under `object`. The other tests share the remaining points equally.
-fn shares(criteria: &[(Criterion, String)], points: Option<&PointScheme>) -> Vec<f64> {
-    let Some(points) = points else {
-        return vec![1.0; criteria.len()];
-    };
-    let is_object = |of: &Criterion| matches!(of, Criterion::Object(_));
-    let objects = criteria.iter().filter(|(of, _)| is_object(of)).count();
-    let others = criteria.len() - objects;
-    let object = points
-        .object
-        .unwrap_or(points.total / criteria.len() as f64);
-    let object = object.min(points.total / objects.max(1) as f64);
-    let other = (points.total - object * objects as f64) / others as f64;
-    let share = |(of, _): &(Criterion, String)| if is_object(of) { object } else { other };
-    criteria.iter().map(share).collect()
 }
 
 /// Returns a folder name for each student, made from the student's name. No two names differ only

@@ -25,7 +25,7 @@ pub struct PointScheme {
     pub total: f64,
     /// Points that a wrong object costs, however many mistakes it has. A mistake that is listed in
     /// `mistakes` costs the points given there instead.
-    pub object: Option<f64>,
+    object: Option<f64>,
     /// Points that each mistake costs, by the mistake's id. The key [`OTHERS`] gives the points of
     /// the ids that are not listed.
     mistakes: BTreeMap<String, f64>,
@@ -105,7 +105,7 @@ impl PointScheme {
     }
 
     /// Returns the points that each mistake of a picture costs, in the order of the mistakes.
-    pub fn taken_off(&self, judged: &JudgedPicture) -> Vec<f64> {
+    fn taken_off(&self, judged: &JudgedPicture) -> Vec<f64> {
         let mut objects = Vec::new();
         let mistakes = &judged.verdict.mistakes;
         let points = mistakes.iter().map(|mistake| {

@@ -48,6 +48,8 @@ struct HorizontalAxis {
     /// Value of the exact method on this axis, for example its CPU time. A vertical line marks it,
     /// since the method's error is too small for the chart. `None` if there is no such value.
     exact: Option<f64>,
+    /// Slopes that short lines show for comparison, each with its label.
+    guides: &'static [(f64, &'static str)],
 }
 
 /// Draws the chart of error against CPU time as SVG. The exact method is drawn as a vertical line.
@@ -58,6 +60,7 @@ pub fn against_time(measured: &Measurement) -> String {
         of: |point| point.typical().cpu,
         written: |time| seconds(time, 1),
         exact: measured.exact.as_ref().map(|runs| Run::typical(runs).cpu),
+        guides: &[],
     };
     svg(measured, &time)
 }
@@ -70,6 +73,7 @@ pub fn against_samples(measured: &Measurement) -> String {
         of: |point| point.per_pixel as f64,
         written: numbers::short,
         exact: None,
+        guides: &[(-0.5, "−1/2"), (-0.75, "−3/4")],
     };
     svg(measured, &samples)
 }
@@ -152,6 +156,11 @@ fn draw(canvas: Canvas, measured: &Measurement, against: &HorizontalAxis) -> Dra
         let (x, _) = place(exact, y_range.start);
         draw_exact(&canvas, x, &columns, &rows)?;
     }
+    for &(slope, label) in against.guides {
+        let [from, to] = guide(&x_range, &y_range, slope).map(|(x, y)| place(x, y));
+        canvas.draw(&PathElement::new(vec![from, to], BLACK.mix(0.6)))?;
+        write(&canvas, label, (to.0 + 5, to.1))?;
+    }
     let places = lines.iter().map(|(_, points)| {
         let places = points.iter().map(|&(x, y)| place(x, y));
         places.collect::<Vec<_>>()
@@ -192,6 +201,16 @@ fn draw_exact(canvas: &Canvas, x: i32, columns: &Range<i32>, rows: &Range<i32>) 
         (x - 54, rows.start + 12)
     };
     write(canvas, "exact", place)
+}
+
+/// Returns the ends of a line that shows a slope. It lies at the lower left of the chart, where no
+/// method's line runs. All slopes begin at one point, high enough for the steepest, −3/4, to end
+/// above the least value that the chart shows, which may be a requested error with its own line.
+fn guide(x: &Range<f64>, y: &Range<f64>, slope: f64) -> [(f64, f64); 2] {
+    let at = |part: f64| x.start * libm::pow(x.end / x.start, part);
+    let (from, to) = (at(0.18), at(0.5));
+    let start = 2.2 * y.start * libm::pow(to / from, 0.75);
+    [(from, start), (to, start * libm::pow(to / from, slope))]
 }
 
 fn write(canvas: &Canvas, text: &str, at: CanvasPoint) -> Drawn {

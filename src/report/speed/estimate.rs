@@ -2,7 +2,7 @@
 //! the methods by CPU time.
 
 use super::{
-    results::{Measurement, MethodSeries, Run, SeriesPoint, end},
+    results::{LEAST_BEND, Measurement, MethodSeries, Run, SeriesPoint, bend, end_slope},
     statistics,
 };
 use crate::scene::Method;
@@ -130,10 +130,7 @@ impl MethodSeries {
             Some(_) if enough == 0 => first,
             Some(many) => self.between(&steps[enough - 1], many, error),
             None => {
-                let errors = end(steps)
-                    .iter()
-                    .map(|(per_pixel, run)| (*per_pixel, run.error));
-                let slope = statistics::slope(&errors.collect::<Vec<_>>())?;
+                let slope = slope_beyond(steps)?;
                 let more = libm::pow(error / last_run.error, 1.0 / slope);
                 (slope < 0.0).then(|| (last * more).ceil())?
             }
@@ -161,6 +158,21 @@ impl MethodSeries {
             Method::MultiJittered => oblong(per_pixel).min(*many),
             _ => per_pixel,
         }
+    }
+}
+
+/// Returns the slope by which a line of errors is continued beyond its last point. It is the slope
+/// at the line's end. If the line bends there, its last segment is continued. Returns `None` if the
+/// numbers of samples are too close to each other.
+fn slope_beyond(steps: &[Measured]) -> Option<f64> {
+    let points = steps.iter().map(|(per_pixel, run)| (*per_pixel, run.error));
+    let points: Vec<_> = points.collect();
+    let slope = end_slope(&points)?;
+    match bend(&points) {
+        Some(bend) if bend.abs() > LEAST_BEND => {
+            statistics::slope(&points[points.len().saturating_sub(2)..])
+        }
+        _ => Some(slope),
     }
 }
 

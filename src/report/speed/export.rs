@@ -14,7 +14,7 @@ use super::{
 
 /// A row of the CSV file. Times are medians in seconds: CPU time in `time`, and elapsed time in
 /// `wall`. Errors are in linear light. The exact method has no number of samples, and an error
-/// bound instead of an error.
+/// bound instead of an error. A line that bends has no slope.
 #[derive(Default, Serialize)]
 struct CsvRow {
     method: &'static str,
@@ -37,7 +37,7 @@ struct CsvRow {
 pub fn to_csv(measured: &Measurement) -> io::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for series in &measured.series {
-        let slope = series.slope();
+        let slope = series.slope().filter(|slope| !slope.bends);
         for point in &series.points {
             writer.serialize(CsvRow {
                 per_pixel: Some(point.per_pixel),
@@ -121,6 +121,7 @@ fn of_series(measured: &Measurement, series: &MethodSeries) -> Value {
         json!({
             "slope": found.slope,
             "slope_error": found.error,
+            "bends": found.bends,
             "per_pixel": end(&series.points).iter().map(|point| point.per_pixel).collect::<Vec<_>>(),
         })
     };

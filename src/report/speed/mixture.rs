@@ -1,9 +1,9 @@
-//! Counts the pixels of a picture that show more than one colour. Distinguishes pixels that the
-//! edge of an object crosses from those that show only a checkerboard.
+//! Counts the pixels of a picture that show more than one colour. Distinguishes pixels that an edge
+//! crosses from those that show only a checkerboard.
 
 use crate::{
     exact::Integrator,
-    scene::Scene,
+    scene::{Scene, Shape},
     tracer::{GRID, World},
 };
 
@@ -17,8 +17,8 @@ const MAX_WORK: u64 = 40_000_000;
 /// pixels can a sampling method err.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixture {
-    /// Fraction of the picture's pixels that show an edge, i.e. several objects, or an object and
-    /// the background.
+    /// Fraction of the picture's pixels that show an edge: several objects, several faces of a box
+    /// with coloured faces, or an object and the background.
     pub edges: f64,
     /// Fraction of the picture's pixels that show only a checkerboard, in both of its colours.
     pub board: f64,
@@ -27,19 +27,22 @@ pub struct Mixture {
 impl Mixture {
     /// Counts the pixels that show more than one colour, in the picture of a scene.
     pub fn of(scene: &Scene) -> Self {
-        let edges = share_of_mixed(&World::by_object(scene));
-        let mixed = share_of_mixed(&World::new(scene));
-        Self {
-            edges,
-            // An edge between objects of the same colour is counted in `edges`, but not in `mixed`.
-            // So the difference may be negative, and is then replaced by 0.
-            board: (mixed - edges).max(0.0),
-        }
+        let edges = share_of_mixed(&World::by_surface(scene));
+        let is_board = |shape: &Shape| matches!(shape, Shape::Checkerboard(_));
+        let has_board = scene.objects.iter().any(|object| is_board(&object.shape));
+        let board = if has_board {
+            // An edge between surfaces of the same colour is counted in `edges`, but not here. So
+            // the difference may be negative, and is then replaced by 0.
+            (share_of_mixed(&World::new(scene)) - edges).max(0.0)
+        } else {
+            0.0
+        };
+        Self { edges, board }
     }
 }
 
 /// Returns the fraction of the picture's pixels that show several entries of the world's palette.
-/// An entry is a colour or, in a world made by [`World::by_object`], an object.
+/// An entry is a colour or, in a world made by [`World::by_surface`], a surface.
 fn share_of_mixed(world: &World) -> f64 {
     let whole = world.picture();
     let integrator = Integrator::for_values(world, |_| []).with_work_limit(MAX_WORK);

@@ -57,12 +57,17 @@ pub fn samples(estimate: &Estimate) -> String {
     }
 }
 
-/// Formats a slope, with its standard error if it has one. `None` becomes [`UNKNOWN`].
+/// Word in a table for the slope of a line that bends.
+pub const BENDS: &str = "bends";
+
+/// Formats a slope, with its standard error if it has one. A line that bends gets the word
+/// [`BENDS`] instead. `None` becomes [`UNKNOWN`].
 pub fn slope(slope: Option<EndSlope>) -> String {
     let signed = |number: f64| format!("{number:.2}").replace('-', "−");
     match slope {
         None => UNKNOWN.to_owned(),
-        Some(EndSlope { slope, error }) => match error {
+        Some(EndSlope { bends: true, .. }) => BENDS.to_owned(),
+        Some(EndSlope { slope, error, .. }) => match error {
             None => signed(slope),
             Some(error) => format!("{} ± {error:.2}", signed(slope)),
         },

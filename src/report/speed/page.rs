@@ -17,7 +17,8 @@ use super::{
 };
 use crate::{
     diagnostic::escaped,
-    film::{self, Film, HEAT_LEGEND},
+    film::{self, Film, Tolerance},
+    numbers,
 };
 
 /// Maximum width and height of the whole picture on the page, in pixels. A larger picture is
@@ -64,7 +65,11 @@ fn section(measured: &Measurement) -> io::Result<Value> {
     } else {
         vec![against_time(measured), against_samples(measured)]
     };
-    let (part, pictures) = pictures(measured)?;
+    let Pictures {
+        part,
+        white,
+        pictures,
+    } = pictures(measured)?;
     let only_method = match shown_methods(measured)[..] {
         [(name, _)] => name,
         _ => "",
@@ -83,7 +88,8 @@ fn section(measured: &Measurement) -> io::Result<Value> {
         rows: summary.rows,
         notes: notes(measured),
         reasons: reasons(measured),
-        legend: HEAT_LEGEND,
+        white: numbers::short(white.ceil()),
+        most: measured.rungs.last().copied().unwrap_or_default(),
         part: part,
         only_method: only_method,
         pictures: pictures,
@@ -98,16 +104,32 @@ fn shown_methods(measured: &Measurement) -> Vec<(&'static str, &MethodPicture)> 
     shown.collect()
 }
 
-/// Returns the pictures that compare the methods, with a description. All show the same part of the
-/// scene's picture: first the exact one, then one for each method. Both are empty if no method has
-/// a picture.
-fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
+/// Pictures that compare the methods. All show the same part of the scene's picture.
+#[derive(Default)]
+struct Pictures {
+    /// Description of the part.
+    part: String,
+    /// Difference that the heat maps draw white, in steps of 8-bit sRGB. It is the largest one in
+    /// the part, so that the differences are seen even if all are small.
+    white: f64,
+    /// The exact picture, then one for each method. Empty if no method has a picture.
+    pictures: Vec<Value>,
+}
+
+fn pictures(measured: &Measurement) -> io::Result<Pictures> {
     let shown = shown_methods(measured);
     let Some(&(first, &MethodPicture { part, .. })) = shown.first() else {
-        return Ok(Default::default());
+        return Ok(Pictures::default());
     };
     let exact = measured.reference.film.part(part);
     let exact = exact.map_err(io::Error::other)?;
+    let largest = |(_, shown): &(_, &MethodPicture)| {
+        let found = film::compare(&shown.film, &exact, EVERY_DIFFERENCE);
+        found.map(|found| found.largest.steps)
+    };
+    let largest = shown.iter().map(largest).collect::<Result<Vec<_>, _>>();
+    let largest = largest.map_err(io::Error::other)?;
+    let white = largest.into_iter().fold(1.0, f64::max);
     let time = measured.exact.as_ref();
     let time = time.map_or(String::new(), |times| {
         format!(", {}", seconds(Run::typical(times).cpu, 2))
@@ -120,14 +142,27 @@ fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
             seconds(shown.cpu, 2),
             plural(shown.per_pixel as usize, "sample")
         );
-        pictures.push(picture(&shown.film, Some(&shown.difference), name, about)?);
+        let difference = film::heat_map_up_to(white, &shown.film, &exact, EVERY_DIFFERENCE);
+        let difference = difference.map_err(io::Error::other)?;
+        pictures.push(picture(&shown.film, Some(&difference), name, about)?);
     }
     let part = format!(
         "{} × {} pixels, {} from the left and {} from the top, where {first} errs most",
         part.width, part.height, part.x, part.y
     );
-    Ok((part, pictures))
+    Ok(Pictures {
+        part,
+        white,
+        pictures,
+    })
 }
+
+/// Tolerance by which the page draws the differences from the exact picture: even the smallest
+/// difference is drawn.
+const EVERY_DIFFERENCE: Tolerance<'_> = Tolerance {
+    steps: 0.0,
+    bounds: None,
+};
 
 fn whole(measured: &Measurement) -> io::Result<Value> {
     let film = film::reduced(&measured.reference.film, WHOLE).map_err(io::Error::other)?;

@@ -11,9 +11,16 @@ use crate::scene::Method;
 /// pixels have a single colour, only the sentence about the pixels is returned.
 pub fn reasons(measured: &Measurement) -> Vec<String> {
     let mixture = measured.mixture;
-    let (edges, board) = (percent(mixture.edges), percent(mixture.board));
+    let edges = percent(mixture.edges);
+    let board = match mixture.board {
+        0.0 => String::new(),
+        board => format!(
+            ", and {} more show a checkerboard alone in both of its colours",
+            percent(board)
+        ),
+    };
     let mut reasons = vec![format!(
-        "An edge crosses {edges} of the pixels, and {board} more show a checkerboard alone in both of its colours. Every other pixel has one colour, which any method finds with one sample: the error comes from the mixed pixels alone."
+        "An edge crosses {edges} of the pixels{board}. Every other pixel has one colour, which any method finds with one sample: the error comes from the mixed pixels alone."
     )];
     if measured.series.is_empty() || mixture.edges + mixture.board == 0.0 {
         return reasons;

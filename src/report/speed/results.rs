@@ -97,6 +97,9 @@ pub struct EndSlope {
     /// Standard error of `slope`, computed from the slopes of single runs; `None` if there are
     /// fewer than three runs.
     pub error: Option<f64>,
+    /// Whether the line bends, i.e. its last two segments have clearly different slopes. `slope` is
+    /// then a mean of both, and says little about more samples.
+    pub bends: bool,
 }
 
 impl EndSlope {
@@ -107,15 +110,20 @@ impl EndSlope {
     const LEAST: f64 = 0.05;
 
     /// Returns the factor by which the error falls if there are four times as many samples,
-    /// 4^−`slope`. Returns `None` if more samples do not help.
+    /// 4^−`slope`. Returns `None` if more samples do not help, or if the line bends.
     pub fn divisor(&self) -> Option<f64> {
-        (self.slope < -Self::LEAST).then(|| libm::pow(4.0, -self.slope))
+        self.settled().map(|slope| libm::pow(4.0, -slope))
     }
 
     /// Returns the factor by which the number of samples must grow for a tenth of the error,
-    /// 10^(−1/`slope`). Returns `None` if more samples do not help.
+    /// 10^(−1/`slope`). Returns `None` if more samples do not help, or if the line bends.
     pub fn cost_of_a_tenth(&self) -> Option<f64> {
-        (self.slope < -Self::LEAST).then(|| libm::pow(10.0, -1.0 / self.slope))
+        self.settled().map(|slope| libm::pow(10.0, -1.0 / slope))
+    }
+
+    /// Returns the slope if more samples would continue it and help.
+    fn settled(&self) -> Option<f64> {
+        (!self.bends && self.slope < -Self::LEAST).then_some(self.slope)
     }
 }
 
@@ -125,6 +133,36 @@ impl EndSlope {
 /// falls faster at first than later.
 pub fn end<T>(points: &[T]) -> &[T] {
     &points[points.len().saturating_sub(3)..]
+}
+
+/// Minimum ratio of the last to the first of the numbers of samples to which a slope is fitted.
+/// Over less, the noise of the errors and the grid that a number happens to have (17 samples make a
+/// single row) would change the slope more than the method does.
+pub const LEAST_SPAN: f64 = 4.0;
+
+/// Minimum difference between the slopes of a line's last two segments at which the line is said
+/// to bend. In ordinary scenes, the lines of methods with strata flatten by up to 0.08 from segment
+/// to segment, as more samples meet finer detail. A line bends by more where a method still leaves
+/// pixels empty, as `scatter` does, or where a grid is aligned with an edge.
+pub const LEAST_BEND: f64 = 0.1;
+
+/// Returns the slope at the end of a line through `points` in logarithms, fitted to the last three.
+/// A point is a number of samples and an error. Returns `None` as [`MethodSeries::slope`] does.
+pub fn end_slope(points: &[(f64, f64)]) -> Option<f64> {
+    let points = end(points);
+    let (first, last) = (points.first()?.0, points.last()?.0);
+    (last >= LEAST_SPAN * first)
+        .then(|| statistics::slope(points))
+        .flatten()
+}
+
+/// Returns the difference between the slopes of the last two segments of a line through `points` in
+/// logarithms. Returns `None` if there are fewer than three points, or if an error is 0.
+pub fn bend(points: &[(f64, f64)]) -> Option<f64> {
+    let [.., a, b, c] = *points else {
+        return None;
+    };
+    Some(statistics::slope(&[b, c])? - statistics::slope(&[a, b])?)
 }
 
 /// Times and error of a render, or typical ones of several renders.
@@ -153,8 +191,6 @@ pub struct MethodPicture {
     pub part: Area,
     /// Pixels in the area that the page shows.
     pub film: Film,
-    /// Heat map of the differences from the exact picture, in the area that the page shows.
-    pub difference: Film,
 }
 
 impl Run {
@@ -180,19 +216,30 @@ impl SeriesPoint {
 
 impl MethodSeries {
     /// Returns the slope of the logarithm of the error over the logarithm of the number of samples,
-    /// for the last three numbers of samples. Returns `None` if fewer than two were measured, or an
-    /// error is 0.
+    /// for the last three numbers of samples. Returns `None` if fewer than two were measured, if
+    /// they span less than a factor of 4, or if an error is 0.
     pub fn slope(&self) -> Option<EndSlope> {
-        let slope = |error: &dyn Fn(&SeriesPoint) -> f64| {
-            let points = end(&self.points).iter();
-            let points = points.map(|point| (point.per_pixel as f64, error(point)));
-            statistics::slope(&points.collect::<Vec<_>>())
+        let line = |error: &dyn Fn(&SeriesPoint) -> f64| -> Vec<(f64, f64)> {
+            let points = self.points.iter();
+            points
+                .map(|point| (point.per_pixel as f64, error(point)))
+                .collect()
         };
-        let runs = end(&self.points).iter().map(|point| point.runs.len()).min();
-        let of_each = (0..runs?).filter_map(|run| slope(&|point| point.runs[run].error));
+        let runs = end(&self.points)
+            .iter()
+            .map(|point| point.runs.len())
+            .min()?;
+        let of_each: Vec<_> = (0..runs)
+            .map(|run| line(&|point| point.runs[run].error))
+            .collect();
+        let slopes: Vec<f64> = of_each.iter().filter_map(|line| end_slope(line)).collect();
+        let bends: Vec<f64> = of_each.iter().filter_map(|line| bend(line)).collect();
+        let all = line(&|point| point.typical().error);
+        let noise = 2.0 * standard_error(&bends).unwrap_or(0.0);
         Some(EndSlope {
-            slope: slope(&|point| point.typical().error)?,
-            error: standard_error(&of_each.collect::<Vec<_>>()),
+            slope: end_slope(&all)?,
+            error: standard_error(&slopes),
+            bends: bend(&all).is_some_and(|bend| bend.abs() > LEAST_BEND.max(noise)),
         })
     }
 

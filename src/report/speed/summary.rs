@@ -2,7 +2,7 @@
 
 use super::{
     estimate::{Estimate, Ranking},
-    notation::{UNKNOWN, asked_error, factor, plural, samples, slope, time},
+    notation::{BENDS, UNKNOWN, asked_error, factor, plural, samples, seconds, slope, time},
     results::{EndSlope, Measurement},
 };
 use crate::{diagnostic::visible_line, numbers, scene::Method, suggest};
@@ -14,6 +14,10 @@ pub struct SummaryTable {
     /// Rows of cells. The first cell is the method's name.
     pub rows: Vec<Vec<String>>,
 }
+
+/// CPU time, in seconds, below which methods are not compared by time. Starting the threads and
+/// preparing the scene take some milliseconds, whatever the method, and vary by as much.
+const TOO_QUICK: f64 = 0.01;
 
 /// Returns a line with the picture's size, the number of runs, the threads and the machine.
 pub fn heading(measured: &Measurement) -> String {
@@ -37,10 +41,11 @@ pub fn verdicts(measured: &Measurement) -> Vec<String> {
 }
 
 /// Returns a sentence that recommends a method to reach the error `wanted`, with the reason and
-/// other methods for comparison.
-pub fn verdict(measured: &Measurement, wanted: f64) -> String {
-    let Ranking { fastest, others } = measured.ranking(wanted);
-    let wanted = asked_error(wanted);
+/// other methods for comparison. Methods are compared by CPU time or, if that is below 10 ms, by
+/// samples.
+pub fn verdict(measured: &Measurement, error: f64) -> String {
+    let Ranking { fastest, others } = measured.ranking(error);
+    let wanted = asked_error(error);
     let Some((_, first)) = fastest.first() else {
         return format!("No method is known to come to an error of {wanted}.");
     };
@@ -57,6 +62,9 @@ pub fn verdict(measured: &Measurement, wanted: f64) -> String {
         return format!(
             "{basis} {names} for an error of {wanted}, the only method that is known to come to it: {cost}."
         );
+    }
+    if let Some(by_samples) = by_samples(measured, error) {
+        return format!("{basis} {by_samples}");
     }
     let last = fastest.last().map_or(*first, |(_, last)| *last);
     let [least, most] = [first, &last].map(|it| time(it, it.cpu));
@@ -89,6 +97,49 @@ pub fn verdict(measured: &Measurement, wanted: f64) -> String {
         verdict += &format!(" For comparison, {}.", compared.join("; "));
     }
     verdict
+}
+
+/// Returns the end of a sentence that recommends the methods that reach `error` with the fewest
+/// samples. Returns `None` if no sampling method was measured to reach it in less than
+/// [`TOO_QUICK`], so that times can be compared.
+fn by_samples(measured: &Measurement, error: f64) -> Option<String> {
+    let estimates = measured.series.iter().filter_map(|series| {
+        let estimate = measured.estimate(series, error)?;
+        (!estimate.is_extrapolated).then_some((series.method, estimate))
+    });
+    let estimates: Vec<(Method, Estimate)> = estimates.collect();
+    if !estimates.iter().any(|(_, it)| it.cpu < TOO_QUICK) {
+        return None;
+    }
+    let count = |(_, it): &(Method, Estimate)| it.per_pixel.unwrap_or(f64::INFINITY);
+    let least = estimates.iter().map(count).fold(f64::INFINITY, f64::min);
+    let (best, rest): (Vec<_>, Vec<_>) = estimates.iter().partition(|it| count(it) == least);
+    let (_, first) = best.first()?;
+    let names = suggest::choice(best.iter().map(|(method, _)| method.name()));
+    let enough = match least {
+        1.0 => "one sample per pixel is enough".to_owned(),
+        _ => format!("{} are the fewest", per_pixel(first)),
+    };
+    let next = rest.iter().find(|(method, _)| *method == Method::Random);
+    let next = next.or(rest.iter().min_by(|a, b| count(a).total_cmp(&count(b))));
+    let mut compared: Vec<String> = next
+        .map(|(method, it)| format!("{} needs {}", method.name(), samples(it)))
+        .into_iter()
+        .collect();
+    compared.extend(
+        measured
+            .exact_estimate(error)
+            .map(|it| cost(&(Method::Exact, it))),
+    );
+    let compared = match compared.as_slice() {
+        [] => String::new(),
+        all => format!(" For comparison, {}.", all.join("; ")),
+    };
+    Some(format!(
+        "{names} for an error of {}: {enough}. Times below {} are too short to compare.{compared}",
+        asked_error(error),
+        seconds(TOO_QUICK, 2),
+    ))
 }
 
 /// Returns a phrase with a method's CPU time and samples per pixel, as a part of a sentence.
@@ -165,6 +216,12 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
     let mut notes = vec![format!(
         "~ extrapolated; {UNKNOWN} not known; the exact picture is within {bound} of the truth in every channel."
     )];
+    let mut slopes = measured.series.iter().filter_map(|series| series.slope());
+    if slopes.any(|slope| slope.bends) {
+        notes.push(format!(
+            "{BENDS}: the last two parts of the line have different slopes, so that it has none yet; more samples would show it."
+        ));
+    }
     if measured.interrupted {
         notes.push("Interrupted: these are the runs that were made until then.".to_owned());
     }

@@ -122,6 +122,15 @@ impl World {
         world
     }
 
+    /// Prepares a scene as [`new`](Self::new) does, but as if each surface had one colour of its
+    /// own. A surface is an object, even a checkerboard, or a coloured face of a box.
+    #[doc(hidden)]
+    pub fn by_surface(scene: &Scene) -> Self {
+        let mut world = Self::new(scene);
+        world.colors = Colors::by_object(0..world.object_count());
+        world
+    }
+
     fn build(scene: &Scene, faces: Faces, reach: DVec2, cancel: &AtomicBool) -> Self {
         let basis = Basis::new(&scene.camera, &scene.image);
         let (scene, pieces) = Pieces::of(scene, faces);

@@ -89,6 +89,59 @@ fn the_slope_is_that_of_the_last_three_points_and_says_what_it_means() {
     }
 }
 
+/// Each row has numbers of samples and errors, and after the arrow whether there is a slope.
+#[test]
+fn a_slope_needs_a_factor_of_four_and_a_line_that_does_not_bend() {
+    for [points, expected] in rows(
+        "
+        16 0.1  17 0.09 -> none
+        15 0.1  16 0.09  17 0.08 -> none
+        4 0.2  15 0.1  16 0.09  17 0.08 -> none
+        4 0.2  16 0.1 -> a slope
+        4 0.2  16 0.1  64 0.05 -> a slope
+        4 0.2  16 0.1  64 0.045 -> a slope
+        -- At first like 1/n, then like 1/√n.
+        4 0.4  16 0.1  64 0.05 -> bends
+        -- Only the last three points count.
+        1 1.6  4 0.4  16 0.2  64 0.1 -> a slope
+    ",
+    ) {
+        let points = numbers(points);
+        let points = points.as_chunks().0.iter().map(|&[n, error]| [n, n, error]);
+        let slope = series(Method::Random, &points.collect::<Vec<_>>()).slope();
+        let found = match slope {
+            None => "none",
+            Some(slope) if slope.bends => "bends",
+            Some(_) => "a slope",
+        };
+        assert_eq!(found, expected, "{slope:?}");
+        let means = slope.map(|slope| [slope.divisor(), slope.cost_of_a_tenth()]);
+        assert_eq!(means.is_some_and(|it| it[0].is_some()), found == "a slope");
+        assert_eq!(means.is_some_and(|it| it[1].is_some()), found == "a slope");
+    }
+}
+
+/// A bend that is no larger than the noise of the runs is none.
+#[test]
+fn noise_does_not_bend_a_line() {
+    let run = |error| Run {
+        cpu: 1.0,
+        wall: 1.0,
+        error,
+    };
+    let with_last = |last: [f64; 3]| MethodSeries {
+        points: [(4, [0.2; 3]), (16, [0.1; 3]), (64, last)]
+            .map(|(per_pixel, errors)| SeriesPoint {
+                per_pixel,
+                runs: errors.map(run).into(),
+            })
+            .into(),
+        ..series(Method::Random, &[])
+    };
+    assert!(with_last([0.064, 0.065, 0.066]).slope().unwrap().bends);
+    assert!(!with_last([0.04, 0.06, 0.09]).slope().unwrap().bends);
+}
+
 /// Returns a series of measurements with one run per point. A point is given by the samples per
 /// pixel, the CPU time in seconds, and the error.
 fn series(method: Method, points: &[[f64; 3]]) -> MethodSeries {
@@ -127,8 +180,12 @@ fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
         1 0.5 0.4  4 1 0.2  16 3 0.1 -> 0.2 4 1 0
         -- Beyond the last point the slope of −1/2 goes on; the time goes on from the first to the last.
         1 0.5 0.4  4 1 0.2  16 3 0.1 -> 0.050000001 64 11 1
-        -- That slope b is the one of the last three points: ln(0.09/0.2) / 2 / ln 4; and 711 is above 64 · 2^(−1/b).
-        1 1 0.4  4 4 0.2  16 16 0.1  64 64 0.09 -> 0.045 711 711 1
+        -- That slope b is the one of the last three points: ln(0.09/0.2) / 2 / ln 4, where 0.135 is between both; and 711 is above 64 · 2^(−1/b).
+        1 1 0.4  4 4 0.2  16 16 0.134164079  64 64 0.09 -> 0.045 711 711 1
+        -- Where the line bends, its last part goes on.
+        1 1 0.4  4 4 0.2  16 16 0.1  64 64 0.09 -> 0.045 584818 584818 1
+        -- Numbers of samples that are close to each other have no slope.
+        15 15 0.2  16 16 0.19  17 17 0.18 -> 0.1
         -- Times that fall by chance do not fall on.
         1 1.2 0.4  4 1.1 0.2  16 1 0.1 -> 0.050000001 64 1 1
         -- The first number is enough, alone or not, whatever the others do.
@@ -275,6 +332,9 @@ fn verdicts_state_ties_single_runs_and_extrapolation() {
         sobol 1 1.1 1.2; halton 1.3 1.4 1.5; exact 9 9.1 9.2 -> 0.051 -> Use exact for an error of 0.051: it takes 9.10 s of CPU time and makes none. For comparison, sobol would take ~4.3 s, with ~62 samples per pixel.
         sobol 1 1.1 1.2; halton 1.3 1.4 1.5 -> 0.051 -> By extrapolation, use sobol for an error of 0.051: it
         sobol 1 1.1 1.2 -> 0.051 -> By extrapolation, use sobol for an error of 0.051, the only method that is known to come to it: sobol would take ~4.3 s, with ~62 samples per pixel.
+        -- Times of a few milliseconds say little about a method.
+        sobol 0.001 0.002 0.003; random 0.004 0.005 0.006; exact 0.05 -> 0.1 -> Use sobol or random for an error of 0.1: 16 samples per pixel are the fewest. Times below 10 ms are too short to compare. For comparison, exact takes 50.0 ms, without error.
+        sobol 0.001 0.002 0.003; random 0.004 0.005 0.006 -> 0.051 -> By extrapolation, use sobol for an error of 0.051: it
         sobol 1 1.1 1.2; halton 1.3 1.4 1.5 -> 1e-17 -> No method is known to come to an error of 1e-17.
     ") {
         let said = verdict(&measured(methods), error.parse().unwrap());
