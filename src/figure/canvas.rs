@@ -45,8 +45,8 @@ circle{fill:currentColor}.seen{stroke:currentColor;stroke-width:1.5}\
 const MARGIN: f64 = 12.0;
 
 /// Cost of a label that covers a line segment of a mark. A label is placed where the sum of its
-/// costs is least. Moving it one step away from its point costs only 6, so a label moves up to six
-/// steps to leave a segment free. With a smaller cost, labels would cover more marks.
+/// costs is least. Moving it one step away from its point costs only 6, so a label moves as far
+/// as it may to leave a segment free. With a smaller cost, labels would cover more marks.
 const MARK: f64 = 40.0;
 
 /// Cost of a label for each filled polygon that it covers in part. Moving a label one step away

@@ -96,9 +96,12 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
         canvas.text(class, "start", place, stratum);
     }
     let marked: Vec<_> = marked.iter().map(|(_, stratum)| *stratum).collect();
-    let marked = match marked[..] {
+    let strata = match marked[..] {
         [] => String::new(),
-        _ => format!(", of which are tinted: {}", marked.join(", ")),
+        _ => format!(
+            "; lines show the strata, each with one sample, of which are tinted: {}",
+            marked.join(", ")
+        ),
     };
 
     let columns = [570.0, 664.0];
@@ -147,11 +150,18 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
     };
     canvas.text("ink", "end", DVec2::new(columns[1], top + 132.0), &off);
     let told = told.join("; ");
+    let means = if seen.is_empty() {
+        format!("The mean, in linear light, is {exact}.")
+    } else {
+        format!(
+            "The mean of the samples, in linear light, is {mean}, the exact mean {exact}: {off}."
+        )
+    };
     Ok(canvas.finish(
         "One pixel and its samples",
         &format!(
-            "Pixel ({x}, {y}) has {count} by the method {method}; lines show the strata, each with one sample{marked}. Seen there: {told}. \
-            The mean of the samples, in linear light, is {mean}, the exact mean {exact}: {off}."
+            "Pixel ({x}, {y}) has {count} by the method {method}{strata}. Seen there: {told}. \
+            {means}"
         ),
     ))
 }

@@ -25,13 +25,18 @@ pub fn draw(scene: &Scene) -> String {
     let mut canvas = Canvas::new(HEIGHT);
     let roll = scene.camera.roll;
     let degrees = number(roll.in_degrees());
+    let turned = match roll.in_degrees() {
+        0.0 => "by nothing",
+        degrees if degrees > 0.0 => "clockwise, so that its right side dips",
+        _ => "counter-clockwise, so that its left side dips",
+    };
     before_and_after(&mut canvas, scene);
     picture(&mut canvas, scene);
     canvas.finish_cropped(
         "The camera's roll",
         &format!(
             "On the left the picture's frame before the roll, dashed, with u and v, and after it, with u′ and v′, seen from the eye: \
-            a roll of {degrees} degrees turns the frame clockwise if it is positive, so that its right side dips. \
+            a roll of {degrees} degrees turns the frame {turned}. \
             On the right the picture in its frame, as outlines of the objects that are seen: the content has turned the other way."
         ),
     )

@@ -1,6 +1,6 @@
 //! Computes the verdict on a picture from the best hypothesis about the program that made it. The
-//! hypothesis's mistakes are named if they explain the picture and are plausible. Otherwise they are
-//! reported as guesses.
+//! hypothesis's mistakes are named if they explain the picture and are plausible. Otherwise they
+//! are reported as guesses.
 
 use super::{
     hypotheses::{Candidate, Mistake, Shows, mistakes, parameters},
@@ -94,8 +94,9 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
     jpeg.is_none() && film.pixels().iter().any(is_other)
 }
 
-/// Returns the mistakes of the hypothesis `last` in words, each with the part of the difference from
-/// the picture that it explains. `is_explained` says whether the hypothesis explains the picture.
+/// Returns the mistakes of the hypothesis `last` in words, each with the part of the difference
+/// from the picture that it explains. `is_explained` says whether the hypothesis explains the
+/// picture.
 fn attributed(judge: &Judge, last: &Candidate, is_explained: bool) -> Vec<NamedMistake> {
     let scene = judge.scene;
     // The medium resolution is enough to measure how much each mistake explains. Shifted samples

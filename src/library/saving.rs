@@ -55,8 +55,8 @@ impl Picture {
         })
     }
 
-    /// Returns the area that the picture shows, and that of the whole picture. They are equal unless
-    /// the picture was read from a file that says where its part lies.
+    /// Returns the area that the picture shows, and that of the whole picture. They are equal
+    /// unless the picture was read from a file that says where its part lies.
     #[cfg(feature = "exr")]
     fn place(&self) -> [Area; 2] {
         let own = Area::whole(self.width(), self.height());

@@ -147,7 +147,7 @@ fn pictures(measured: &Measurement) -> io::Result<Pictures> {
         pictures.push(picture(&shown.film, Some(&difference), name, about)?);
     }
     let part = format!(
-        "{} × {} pixels, {} from the left and {} from the top, where {first} errs most",
+        "{} × {} pixels, {} from the left and {} from the top, where {first} errs most at an edge",
         part.width, part.height, part.x, part.y
     );
     Ok(Pictures {

@@ -309,9 +309,9 @@ fn rendered(
 const PART: (u32, u32) = (48, 27);
 
 /// Minimum fraction of an area's pixels that show another object, or background, than the most
-/// frequent one. If the fraction is smaller, the area is treated as having no edge, and another area
-/// is preferred for comparing the methods. With a quarter, an edge runs through the middle of the
-/// area rather than through a corner.
+/// frequent one. If the fraction is smaller, the area is treated as having no edge, and another
+/// area is preferred for comparing the methods. With a quarter, an edge runs through the middle of
+/// the area rather than through a corner.
 const OTHER_OBJECT: f64 = 0.25;
 
 /// Returns the area in which the page compares the methods. Areas without background that show an

@@ -47,7 +47,7 @@ pub fn verdict(measured: &Measurement, error: f64) -> String {
     let Ranking { fastest, others } = measured.ranking(error);
     let wanted = asked_error(error);
     let Some((_, first)) = fastest.first() else {
-        return format!("No method is known to come to an error of {wanted}.");
+        return format!("No method is known to reach an error of {wanted}.");
     };
     let basis = match (first.is_extrapolated, measured.runs()) {
         (false, 1) => "By one run alone, use",
@@ -60,7 +60,7 @@ pub fn verdict(measured: &Measurement, error: f64) -> String {
     if let ([only], []) = (fastest.as_slice(), others.as_slice()) {
         let cost = cost(only);
         return format!(
-            "{basis} {names} for an error of {wanted}, the only method that is known to come to it: {cost}."
+            "{basis} {names} for an error of {wanted}, the only method that is known to reach it: {cost}."
         );
     }
     if let Some(by_samples) = by_samples(measured, error) {
@@ -69,7 +69,7 @@ pub fn verdict(measured: &Measurement, error: f64) -> String {
     let last = fastest.last().map_or(*first, |(_, last)| *last);
     let [least, most] = [first, &last].map(|it| time(it, it.cpu));
     let why = match fastest.as_slice() {
-        [(Method::Exact, _)] => format!("it takes {least} of CPU time and makes none"),
+        [(Method::Exact, _)] => format!("it takes {least} of CPU time and has no sampling error"),
         [(_, it)] => {
             format!(
                 "it takes the least CPU time, {least}, with {}",
@@ -82,7 +82,7 @@ pub fn verdict(measured: &Measurement, error: f64) -> String {
                 range += &format!(" to {most}");
             }
             let exact = all.iter().find(is_exact);
-            let exact = exact.map_or("", |_| ", and exact makes none");
+            let exact = exact.map_or("", |_| ", and exact has no sampling error");
             format!("they are about as fast, with {range} of CPU time{exact}")
         }
     };

@@ -201,7 +201,7 @@ fn no_method_claims_an_error_below_the_reference_bound() {
     assert!(1e-17 < bound && bound <= largest, "{bound} {largest}");
     let needed = &report["methods"][0]["needed"];
     assert!(needed[0]["per_pixel"].is_number() && needed[1]["per_pixel"].is_null());
-    let verdict = "No method is known to come to an error of 1e-17.";
+    let verdict = "No method is known to reach an error of 1e-17.";
     assert_eq!(report["verdicts"][1], verdict);
 }
 

@@ -326,16 +326,16 @@ fn verdicts_state_ties_single_runs_and_extrapolation() {
     for [methods, error, expected] in rows("
         -- Apart, within the spread of one method's runs, and in a single run.
         sobol 1 1.1 1.2; halton 1.3 1.4 1.5 -> 0.1 -> Use sobol for an error of 0.1: it takes the least CPU time, 1.10 s, with 16 samples per pixel. For comparison, halton takes 1.40 s, with 16 samples per pixel.
-        sobol 1 1.1 1.2; halton 1.11 1.12 1.3; random 4 4.1 4.2; exact 1.05 1.15 9 -> 0.1 -> Use sobol, halton or exact for an error of 0.1: they are about as fast, with 1.10 s to 1.15 s of CPU time, and exact makes none. For comparison, random takes 4.10 s, with 16 samples per pixel.
+        sobol 1 1.1 1.2; halton 1.11 1.12 1.3; random 4 4.1 4.2; exact 1.05 1.15 9 -> 0.1 -> Use sobol, halton or exact for an error of 0.1: they are about as fast, with 1.10 s to 1.15 s of CPU time, and exact has no sampling error. For comparison, random takes 4.10 s, with 16 samples per pixel.
         sobol 1; halton 1.3 -> 0.1 -> By one run alone, use sobol for an error of 0.1: it
         -- What is extrapolated decides only where there is nothing else.
-        sobol 1 1.1 1.2; halton 1.3 1.4 1.5; exact 9 9.1 9.2 -> 0.051 -> Use exact for an error of 0.051: it takes 9.10 s of CPU time and makes none. For comparison, sobol would take ~4.3 s, with ~62 samples per pixel.
+        sobol 1 1.1 1.2; halton 1.3 1.4 1.5; exact 9 9.1 9.2 -> 0.051 -> Use exact for an error of 0.051: it takes 9.10 s of CPU time and has no sampling error. For comparison, sobol would take ~4.3 s, with ~62 samples per pixel.
         sobol 1 1.1 1.2; halton 1.3 1.4 1.5 -> 0.051 -> By extrapolation, use sobol for an error of 0.051: it
-        sobol 1 1.1 1.2 -> 0.051 -> By extrapolation, use sobol for an error of 0.051, the only method that is known to come to it: sobol would take ~4.3 s, with ~62 samples per pixel.
+        sobol 1 1.1 1.2 -> 0.051 -> By extrapolation, use sobol for an error of 0.051, the only method that is known to reach it: sobol would take ~4.3 s, with ~62 samples per pixel.
         -- Times of a few milliseconds say little about a method.
         sobol 0.001 0.002 0.003; random 0.004 0.005 0.006; exact 0.05 -> 0.1 -> Use sobol or random for an error of 0.1: 16 samples per pixel are the fewest. Times below 10 ms are too short to compare. For comparison, exact takes 50.0 ms, without error.
         sobol 0.001 0.002 0.003; random 0.004 0.005 0.006 -> 0.051 -> By extrapolation, use sobol for an error of 0.051: it
-        sobol 1 1.1 1.2; halton 1.3 1.4 1.5 -> 1e-17 -> No method is known to come to an error of 1e-17.
+        sobol 1 1.1 1.2; halton 1.3 1.4 1.5 -> 1e-17 -> No method is known to reach an error of 1e-17.
     ") {
         let said = verdict(&measured(methods), error.parse().unwrap());
         let is_whole = expected.ends_with('.');
