@@ -1,6 +1,6 @@
 //! Explains words: diagnostic codes, the language's blocks, fields and functions, terms of the
-//! camera and of sampling, and words of other programs. Each code has a page with a wrong scene, the
-//! corrected one, and the reason for the rule.
+//! camera and of sampling, and words of other programs. Each code has a page with a wrong scene,
+//! the corrected one, and the reason for the rule.
 //!
 //! The pages are the files in `grammar/codes`, Markdown in a fixed form: a title, a description of
 //! the mistake, and the sections *Wrong*, *Right* and *Why*. Tests check that every code has a

@@ -5,9 +5,9 @@
 #
 #     sbatch --array=1-N render.sh SCENE N FOLDER [OPTION...]
 #
-# The band goes to FOLDER, and OPTIONs are those of `pinhole render`, such as `--set`. A band that is
-# there already is not rendered again. Files are written completely or not at all, so that a task
-# that was killed leaves nothing that looks like a band.
+# The band goes to FOLDER, and OPTIONs are those of `pinhole render`, such as `--set`. A band that
+# is there already is not rendered again. Files are written completely or not at all, so that a
+# task that was killed leaves nothing that looks like a band.
 set -euo pipefail
 
 if [ $# -lt 3 ] || [ -z "${SLURM_ARRAY_TASK_ID:-}" ]; then
