@@ -68,10 +68,10 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// The data break a condition of the language, such as that a radius is more than 0. The places
-    /// of the mistakes are those in the generated text.
+    /// The data break a condition of the language: for example, a radius is 0, a number is NaN, or
+    /// an object's name has a space. The places of the mistakes are those in the generated text.
     pub fn from_data(data: &SceneData) -> Result<Self, Mistakes> {
-        Self::parse(&formatted(data))
+        Self::parse(&formatted(data.text()?))
     }
 
     /// Returns the scene with one more setting in the form of the option `--set`, for example
@@ -163,7 +163,7 @@ impl fmt::Display for Scene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.sources.sets[..] {
             [] => f.write_str(self.sources.file.text()),
-            _ => f.write_str(&formatted(&self.data)),
+            _ => f.write_str(&formatted(self.data.to_string())),
         }
     }
 }
@@ -177,9 +177,7 @@ impl FromStr for Scene {
     }
 }
 
-/// Writes data as the text of a scene. It has the canonical layout, unless it cannot be parsed
-/// because an object's name is invalid.
-fn formatted(data: &SceneData) -> String {
-    let text = data.to_string();
+/// Returns a text in the canonical layout, or as it is if it cannot be parsed.
+fn formatted(text: String) -> String {
     format(&Source::from_text("scene", text.clone())).unwrap_or(text)
 }

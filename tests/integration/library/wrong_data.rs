@@ -32,7 +32,7 @@ fn data_that_break_a_condition_are_no_scene() {
         color: pinhole::Color::BLACK,
     };
     type Change = (&'static str, fn(&mut SceneData));
-    let changes: [Change; 15] = [
+    let changes: [Change; 18] = [
         ("`radius` must be more than 0", |it| {
             if let Shape::Sphere(sphere) = &mut it.objects_mut()[0].shape {
                 sphere.radius = -1.0;
@@ -41,8 +41,19 @@ fn data_that_break_a_condition_are_no_scene() {
         ("stands on the point that it looks at", |it| {
             it.camera.view = View::Lookat(it.camera.eye);
         }),
-        ("NaN", |it| it.camera.eye.x = f64::NAN),
-        ("inf", |it| it.camera.eye.x = f64::INFINITY),
+        ("`eye` is not finite", |it| it.camera.eye.x = f64::NAN),
+        ("`eye` is not finite", |it| {
+            it.camera.eye.z = f64::NEG_INFINITY
+        }),
+        ("`roll` is not finite", |it| {
+            it.camera.roll.radians = f64::NAN
+        }),
+        ("`far` is not finite", |it| {
+            it.camera.far = Some(f64::INFINITY)
+        }),
+        ("`background` is not finite", |it| {
+            it.image.background.srgb[2] = f64::NAN;
+        }),
         ("`far` must be more than `near`", |it| {
             it.camera.far = Some(0.0)
         }),
@@ -88,6 +99,45 @@ fn data_that_break_a_condition_are_no_scene() {
     }
     let data = changed(|it| it.objects_mut().push(Object::new(ball(1.0)).named("Other")));
     assert!(World::try_new(&data).is_ok());
+}
+
+#[test]
+fn a_name_that_the_language_does_not_have_is_one_mistake() {
+    let ball = Sphere {
+        center: DVec3::Y,
+        radius: 1.0,
+        color: pinhole::Color::BLACK,
+    };
+    for name in [
+        "",
+        " ",
+        "A ",
+        "A for i < 3",
+        "A { center (9, 9, 9)  radius 5  color red } sphere B",
+        "B[0]",
+        "7up",
+        "Bäll",
+        "let",
+        "for",
+    ] {
+        let data = changed(|it| it.objects_mut().push(Object::new(ball).named(name)));
+        let errors = [
+            Scene::from_data(&data).unwrap_err(),
+            World::try_new(&data).unwrap_err(),
+        ];
+        for error in errors {
+            let mistakes: Vec<_> = error.iter().collect();
+            assert_eq!(mistakes.len(), 1, "{name}: {error}");
+            assert_eq!(mistakes[0].code, "pinhole::bad_name", "{name}: {error}");
+            assert_eq!(error.sources().text(mistakes[0].labels[0].span), name);
+        }
+    }
+    let mut repeated = read(
+        "camera { eye (0, 2, 8)  lookat (0, 1, 0) }  sphere A for i < 2, j < 2 { center (i, j, 0) }",
+    );
+    assert!(repeated.check().is_ok());
+    repeated.objects_mut()[1].name = Some("A[0, 1] { } sphere B".to_owned());
+    assert_eq!(repeated.check().unwrap_err().iter().count(), 1);
 }
 
 #[test]
