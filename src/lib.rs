@@ -17,7 +17,8 @@
 //! ```
 //!
 //! - [`Scene::parse`] returns the scene, or all [`Mistakes`] of the text. Each of them is a
-//!   [`Diagnostic`] with its places and fixes. [`Scene::diagnostics`] returns the warnings.
+//!   [`Diagnostic`] with its places and fixes, and [`Mistakes::fixed`] applies them.
+//!   [`Scene::diagnostics`] returns the warnings.
 //! - [`Scene::render`] samples as the scene says; [`Scene::render_exact`] computes each pixel's
 //!   mean with a bound on its error. A [`Picture`] returns its pixels as bytes or in linear light,
 //!   and is saved to a file.
@@ -176,7 +177,7 @@ pub use crate::grading::Verdict;
 #[doc(inline)]
 pub use crate::{
     color::Color,
-    diagnostic::{Diagnostic, Mistakes},
+    diagnostic::{Applicability, Diagnostic, Mistakes},
     library::{Error, Exact, Picture, Scene},
     math::Angle,
     scene::{Method, Scene as SceneData},

@@ -5,6 +5,7 @@
 //! modules work on them. The crate's root exports the types.
 
 mod error;
+mod mistakes;
 mod picture;
 #[cfg(feature = "read")]
 mod reading;
