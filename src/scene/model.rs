@@ -138,8 +138,9 @@ pub enum Count {
     Total(u64),
 }
 
-/// One object of the scene.
-#[derive(Clone, Debug, PartialEq)]
+/// One object of the scene. Two objects are equal if their names, indices and shapes are. Their
+/// spans may differ, so that scenes of different texts can be equal.
+#[derive(Clone, Debug)]
 pub struct Object {
     /// The unique name, if the object has one: `Ball`, or `Ball[3, 1]` if the block is repeated.
     pub name: Option<String>,
@@ -150,6 +151,18 @@ pub struct Object {
     pub shape: Shape,
     /// Span of the whole block in the text.
     pub span: Span,
+}
+
+impl PartialEq for Object {
+    fn eq(&self, other: &Self) -> bool {
+        let Self {
+            name,
+            indices,
+            shape,
+            span: _,
+        } = self;
+        *name == other.name && *indices == other.indices && *shape == other.shape
+    }
 }
 
 impl Object {

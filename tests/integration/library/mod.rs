@@ -104,6 +104,24 @@ fn extreme_numbers_are_written_to_the_last_bit() {
 }
 
 #[test]
+fn equality_of_data_ignores_where_they_stand_in_a_text() {
+    let text = example_text("figure_9_9");
+    let scene = Scene::parse(&text).unwrap();
+    let below = Scene::parse(&format!("\n\n{text}")).unwrap();
+    assert_eq!(scene.data(), below.data());
+    assert_eq!(Scene::from_data(scene.data()).unwrap().data(), scene.data());
+    let mut other = scene.data().clone();
+    other.objects_mut()[0].name = Some("Other".to_owned());
+    assert_ne!(&other, scene.data());
+    let repeated = Scene::parse(
+        "camera { eye (0, 2, 8)  lookat (0, 1, 0) }  sphere A for i < 2 { center (i, 1, 0) }",
+    );
+    let repeated = repeated.unwrap();
+    let objects = &repeated.data().objects;
+    assert!(objects[0].is_beside(&objects[1]) && objects[0] != objects[1]);
+}
+
+#[test]
 fn a_repeated_object_gets_a_name_that_is_free() {
     let text = "camera { eye (0, 2, 8)  lookat (0, 1, 0) }
         sphere Ball for i < 2, j < 2 { center (i, j, 0) }  sphere Ball_1_0 { center (0, 5, 0) }";
