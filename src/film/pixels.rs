@@ -1,5 +1,7 @@
 //! A picture in memory: its pixels, row by row.
 
+use thiserror::Error;
+
 use super::{
     memory::{self, TooLarge},
     srgb::Encoder,
@@ -102,6 +104,18 @@ impl AsBytes for [u8; 3] {
     }
 }
 
+/// Error: a list has not one pixel for each place of a picture, or the picture has no places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("{count} pixels do not make a picture of {width} × {height}")]
+pub struct WrongPixelCount {
+    /// Number of columns of the picture.
+    pub width: u32,
+    /// Number of rows of the picture.
+    pub height: u32,
+    /// Number of pixels in the list.
+    pub count: usize,
+}
+
 /// A picture in memory. By default, a pixel is a colour in linear light, as 64-bit floats.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film<P = [f64; 3]> {
@@ -125,6 +139,27 @@ impl<P: Pixel> Film<P> {
             width,
             height,
             pixels: vec![P::default(); width as usize * height as usize],
+        })
+    }
+
+    /// Makes a picture from its pixels, row by row from the top.
+    ///
+    /// # Errors
+    ///
+    /// The number of pixels is not `width` · `height`, or is 0.
+    pub fn from_pixels(width: u32, height: u32, pixels: Vec<P>) -> Result<Self, WrongPixelCount> {
+        let count = pixels.len();
+        if count == 0 || count as u64 != Area::whole(width, height).pixels() {
+            return Err(WrongPixelCount {
+                width,
+                height,
+                count,
+            });
+        }
+        Ok(Self {
+            width,
+            height,
+            pixels,
         })
     }
 

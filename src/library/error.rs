@@ -5,7 +5,11 @@ use std::{io, path::PathBuf};
 
 use thiserror::Error;
 
-use crate::{diagnostic::Mistakes, film::SizesDiffer, render::RenderError};
+use crate::{
+    diagnostic::Mistakes,
+    film::{SizesDiffer, WrongPixelCount},
+    render::RenderError,
+};
 
 /// Why an operation on a scene or a picture failed.
 #[derive(Debug, Error)]
@@ -20,6 +24,9 @@ pub enum Error {
     /// Two pictures have different sizes.
     #[error(transparent)]
     SizesDiffer(#[from] SizesDiffer),
+    /// The number of pixels is not that of the picture's places.
+    #[error(transparent)]
+    WrongPixelCount(#[from] WrongPixelCount),
     /// The bytes are not a picture that can be read.
     #[cfg(feature = "read")]
     #[error(transparent)]

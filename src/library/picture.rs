@@ -4,11 +4,13 @@ use std::sync::Arc;
 
 use super::Error;
 use crate::{
+    color::Color,
     film::{self, AsBytes, Encoder, Film, Rounding},
     source::Sources,
 };
 
-/// A picture in memory. It was rendered, or read from a file that any program may have written.
+/// A picture in memory. It was rendered, read from a file that any program may have written, or
+/// made from pixels.
 ///
 /// ```
 /// let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }")?;
@@ -33,12 +35,62 @@ pub struct Picture {
 impl Picture {
     /// Makes a picture from pixels that were rendered, and the sources of their scene.
     pub(super) fn rendered(film: Film, sources: &Arc<Sources>) -> Self {
+        let coded = film::Picture::new(film, Rounding::Float);
+        Self::of(coded, Some(Arc::clone(sources)))
+    }
+
+    fn of(coded: film::Picture, sources: Option<Arc<Sources>>) -> Self {
         Self {
-            coded: film::Picture::new(film, Rounding::Float),
+            coded,
             #[cfg(feature = "read")]
             jpeg: None,
-            sources: Some(Arc::clone(sources)),
+            sources,
         }
+    }
+
+    /// Makes a picture from pixels of another program, row by row from the top, in linear light
+    /// from 0 to 1.
+    ///
+    /// ```
+    /// use pinhole::{Picture, Scene};
+    ///
+    /// let gray = Picture::from_pixels(80, 45, vec![[0.2; 3]; 80 * 45])?;
+    /// # let scene = Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+    /// #     checkerboard {}  image { width 80  height 45 }")?;
+    /// assert!(gray.rmse(&scene.render()?)? > 0.1);
+    /// assert!(Picture::from_pixels(80, 44, gray.into_pixels()).is_err());
+    /// # Ok::<(), pinhole::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The number of pixels is not `width` · `height`, or is 0.
+    pub fn from_pixels(width: u32, height: u32, pixels: Vec<[f64; 3]>) -> Result<Self, Error> {
+        Ok(Film::from_pixels(width, height, pixels)?.into())
+    }
+
+    /// Makes a picture from the bytes of red, green and blue of each pixel, row by row from the
+    /// top, in sRGB. [`to_rgb8`](Self::to_rgb8) returns the same bytes.
+    ///
+    /// ```
+    /// use pinhole::Picture;
+    ///
+    /// let picture = Picture::from_rgb8(2, 1, &[0, 0, 0, 255, 165, 0])?;
+    /// assert_eq!(picture.pixels()[0], [0.0; 3]);
+    /// assert_eq!(picture.to_rgb8(), [0, 0, 0, 255, 165, 0]);
+    /// # Ok::<(), pinhole::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The number of bytes is not 3 · `width` · `height`, or is 0.
+    pub fn from_rgb8(width: u32, height: u32, bytes: &[u8]) -> Result<Self, Error> {
+        let (colors, rest) = bytes.as_chunks::<3>();
+        // Bytes that are too few for a pixel count as one more pixel, so that they are an error.
+        let colors = colors.iter().copied().chain(rest.first().map(|_| [0; 3]));
+        let light = colors.map(|color| Color::from_bytes(color).to_linear());
+        let film = Film::from_pixels(width, height, light.collect())?;
+        Ok(Self::of(film::Picture::new(film, Rounding::Byte), None))
     }
 
     /// Returns the number of columns of pixels.
@@ -99,6 +151,13 @@ impl Picture {
     /// The sizes of the pictures differ.
     pub fn rmse(&self, other: &Self) -> Result<f64, Error> {
         Ok(film::rmse(self.film(), other.film())?)
+    }
+}
+
+/// Makes a picture of the film's pixels. What scene it shows is unknown.
+impl From<Film> for Picture {
+    fn from(film: Film) -> Self {
+        Self::of(film::Picture::new(film, Rounding::Float), None)
     }
 }
 

@@ -265,6 +265,48 @@ fn pictures_are_judged() {
 }
 
 #[test]
+fn pixels_of_another_program_are_a_picture() {
+    let scene = Scene::parse(&example_text("figure_9_9")).unwrap();
+    let scene = scene.with_set("image.width=96").unwrap();
+    let scene = scene.with_set("image.height=54").unwrap();
+    let exact = scene.render_exact().unwrap().picture;
+    let (bytes, pixels) = (exact.to_rgb8(), exact.pixels().to_vec());
+    for picture in [
+        Picture::from_rgb8(96, 54, &bytes).unwrap(),
+        Picture::from_pixels(96, 54, pixels).unwrap(),
+        exact.film().clone().into(),
+    ] {
+        assert_eq!(picture.to_rgb8(), bytes);
+        assert!(picture.rmse(&exact).unwrap() < 0.01);
+        let told = scene.grade(&picture).unwrap().to_string();
+        assert_eq!(told, "right: equal to the exact picture");
+        assert!(picture.sources().is_none());
+    }
+    let all: Vec<u8> = (0..=255).flat_map(|byte| [byte; 3]).collect();
+    assert_eq!(Picture::from_rgb8(16, 16, &all).unwrap().to_rgb8(), all);
+    for (error, expected) in [
+        (
+            Picture::from_rgb8(2, 1, &[0; 7]).unwrap_err(),
+            "3 pixels do not make a picture of 2 × 1",
+        ),
+        (
+            Picture::from_rgb8(2, 1, &[0; 3]).unwrap_err(),
+            "1 pixels do not make a picture of 2 × 1",
+        ),
+        (
+            Picture::from_pixels(0, 0, vec![]).unwrap_err(),
+            "0 pixels do not make a picture of 0 × 0",
+        ),
+        (
+            Picture::from_pixels(u32::MAX, u32::MAX, vec![[0.0; 3]]).unwrap_err(),
+            "1 pixels do not make a picture of 4294967295 × 4294967295",
+        ),
+    ] {
+        assert_eq!(error.to_string(), expected);
+    }
+}
+
+#[test]
 fn errors_name_the_file_and_the_reason() {
     let folder = Folder::with([("text.png", "camera {}")]);
     let scene = Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }").unwrap();

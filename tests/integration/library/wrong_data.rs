@@ -216,6 +216,19 @@ fn a_picture_with_values_that_are_no_numbers_is_wrong() {
 }
 
 #[test]
+#[should_panic(expected = "the picture to judge has another size")]
+fn a_comparison_of_another_size_is_refused() {
+    let scene = changed(|_| ());
+    let control = Control::default();
+    let new = |part| Reference::new(&scene, part, Rounding::Float, &control).unwrap();
+    let (reference, small) = (new(Area::whole(32, 18)), new(Area::whole(16, 18)));
+    let black = Film::new(16, 18).unwrap();
+    let comparison = small.compare(&black, 0.5).unwrap();
+    let picture = film::Picture::new(black, Rounding::Float);
+    let _ = reference.judge(&picture, None, &comparison, control.cancel);
+}
+
+#[test]
 #[should_panic(expected = "the sampling is of a picture of another size")]
 fn a_sampling_of_another_size_is_refused() {
     let [small, large] = [16, 32].map(|width| example("figure_9_9", width, 9));
