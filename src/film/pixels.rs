@@ -126,7 +126,7 @@ pub struct Film<P = [f64; 3]> {
 }
 
 impl<P: Pixel> Film<P> {
-    /// Makes a black picture.
+    /// Makes a black picture. It may have no pixels, but then it cannot be written to a file.
     ///
     /// # Errors
     ///
@@ -268,7 +268,16 @@ impl<P: Pixel> Film<P> {
 /// Returns the number of pixels whose bytes of sRGB are certain, i.e. the same for all colours
 /// within the error bound. `bounds` contains the error bound of each pixel's colour, in linear
 /// light.
+///
+/// # Panics
+///
+/// The number of error bounds is not that of the pixels.
 pub fn certified(film: &Film, bounds: &[f32]) -> u64 {
+    assert_eq!(
+        film.pixels.len(),
+        bounds.len(),
+        "there is not one error bound for each pixel"
+    );
     let encoder = Encoder::default();
     let is_certain = |&(&light, &bound): &(&[f64; 3], &f32)| {
         <[u8; 3]>::is_certain(light, bound.into(), &encoder)

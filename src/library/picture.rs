@@ -134,7 +134,7 @@ impl Picture {
     }
 
     /// Returns the root mean square of the differences between two pictures, over all pixels and
-    /// channels. It is in linear light and from 0 to 1.
+    /// channels. It is in linear light and from 0 to 1, or NaN if a value of a pixel is NaN.
     ///
     /// ```
     /// # let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }

@@ -7,7 +7,7 @@ use pinhole::{
     Scene, SceneData,
     area::Area,
     film::{self, Film, Rounding, SizesDiffer, write_exr},
-    glam::DVec3,
+    glam::{DVec2, DVec3},
     grading::{Kind, Reference},
     refine::coarse,
     render::{self, Control, RenderError, render_as_asked, render_exact},
@@ -213,6 +213,34 @@ fn a_picture_with_values_that_are_no_numbers_is_wrong() {
             assert_eq!(verdict.mistakes[0].id, "not_finite");
         }
     }
+}
+
+#[test]
+fn what_lies_outside_of_a_picture_is_nothing() {
+    let scene = example("figure_9_9", 96, 54);
+    let world = World::new(&scene);
+    let pixels = [(48, 53), (96, 53), (48, 54), (1000, 1000), (u32::MAX, 0)];
+    let is_seen = pixels.map(|(x, y)| world.object_at(x, y).is_some());
+    assert_eq!(is_seen, [true, false, false, false, false]);
+    for (method, _) in pinhole::schema::METHODS {
+        assert!(pinhole::sampling::tilings(*method, 0).is_empty());
+    }
+    let empty: Film = Film::new(0, 0).unwrap();
+    assert_eq!(film::rmse(&empty, &empty), Ok(0.0));
+    let numbers = Film::from_fn(2, 1, |_, _| [f64::NAN; 3]).unwrap();
+    assert!(film::rmse(&numbers, &numbers).unwrap().is_nan());
+}
+
+#[test]
+#[should_panic(expected = "there is not one error bound for each pixel")]
+fn pixels_without_error_bounds_are_not_certified() {
+    film::certified(&Film::new(2, 1).unwrap(), &[]);
+}
+
+#[test]
+#[should_panic(expected = "is not finite")]
+fn a_point_that_is_not_finite_is_not_probed() {
+    pinhole::probe::probe(&changed(|_| ()), DVec2::NAN);
 }
 
 #[test]
