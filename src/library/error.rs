@@ -31,6 +31,15 @@ pub enum Error {
     #[cfg(feature = "read")]
     #[error(transparent)]
     Unreadable(#[from] crate::film::Unreadable),
+    /// A file is not a picture that can be read.
+    #[cfg(feature = "read")]
+    #[error("cannot read {}: {error}", path.display())]
+    NoPicture {
+        /// Path of the file.
+        path: PathBuf,
+        /// Reason why the file is no picture that can be read.
+        error: crate::film::Unreadable,
+    },
     /// A file cannot be read.
     #[error("cannot read {}: {error}", path.display())]
     Read {

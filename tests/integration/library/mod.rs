@@ -308,7 +308,7 @@ fn pixels_of_another_program_are_a_picture() {
 
 #[test]
 fn errors_name_the_file_and_the_reason() {
-    let folder = Folder::with([("text.png", "camera {}")]);
+    let folder = Folder::with([("text.png", "camera {}"), ("a.pdf", "%PDF-1.7")]);
     let scene = Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }").unwrap();
     let picture = scene.with_set("image.width=4").unwrap().render().unwrap();
     let path = |name: &str| folder.path(name);
@@ -328,7 +328,11 @@ fn errors_name_the_file_and_the_reason() {
         ),
         (
             Picture::open(path("text.png")).unwrap_err(),
-            "it is no picture in PNG",
+            "cannot read text.png: it is no picture in PNG",
+        ),
+        (
+            Picture::open(path("a.pdf")).unwrap_err(),
+            "cannot read a.pdf: it is no picture, but a PDF: use the picture in it, as a PNG",
         ),
     ] {
         let told = told(error);
