@@ -66,7 +66,8 @@ impl fmt::Display for Mistakes {
     }
 }
 
-/// Writes one line for each mistake. Reports are drawn only with the feature `fancy`.
+/// Writes one line for each mistake, and below it the help. Reports with excerpts of the text need
+/// the feature `fancy`.
 #[cfg(not(feature = "fancy"))]
 impl fmt::Display for Mistakes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -78,6 +79,9 @@ impl fmt::Display for Mistakes {
                 let name = self.sources.get(label.span.source).name();
                 let place = self.sources.place(label.span);
                 write!(f, " ({name}:{}:{})", place.line, place.column)?;
+            }
+            if let Some(help) = &it.help {
+                write!(f, "\n  help: {}", help.replace('\n', "\n  "))?;
             }
         }
         Ok(())
@@ -91,3 +95,25 @@ impl fmt::Debug for Mistakes {
 }
 
 impl Error for Mistakes {}
+
+#[cfg(all(test, not(feature = "fancy")))]
+mod tests {
+    use crate::Scene;
+
+    #[test]
+    fn a_report_without_excerpts_has_the_place_and_the_help() {
+        let text = "camera { eye (0, 2, 8)\n  lookt (0, 1, 0) }\nspheree { center (0, 1, 0) }";
+        let report = Scene::parse(text).unwrap_err().to_string();
+        let lines: Vec<_> = report.lines().collect();
+        assert!(
+            lines[0].starts_with("error[pinhole::unknown_field]: "),
+            "{report}"
+        );
+        assert!(lines[0].ends_with(" (scene:2:3)"), "{report}");
+        assert!(
+            lines[1].starts_with("  help: did you mean `lookat`?"),
+            "{report}"
+        );
+        assert!(lines[2].ends_with(" (scene:3:1)"), "{report}");
+    }
+}
