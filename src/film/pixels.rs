@@ -1,5 +1,7 @@
 //! A picture in memory: its pixels, row by row.
 
+use std::fmt;
+
 use thiserror::Error;
 
 use super::{
@@ -117,12 +119,19 @@ pub struct WrongPixelCount {
 }
 
 /// A picture in memory. By default, a pixel is a colour in linear light, as 64-bit floats.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Film<P = [f64; 3]> {
     width: u32,
     height: u32,
     /// The pixels, row by row from the top.
     pixels: Vec<P>,
+}
+
+/// Writes the size, without the pixels.
+impl<P> fmt::Debug for Film<P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Film {{ {} × {}, .. }}", self.width, self.height)
+    }
 }
 
 impl<P: Pixel> Film<P> {

@@ -1,6 +1,6 @@
 //! Pictures in memory.
 
-use std::sync::Arc;
+use std::{fmt, sync::Arc};
 
 use super::Error;
 use crate::{
@@ -20,7 +20,7 @@ use crate::{
 /// assert_eq!(picture.pixels()[0], [0.0; 3]); // black in the top left corner
 /// # Ok::<(), pinhole::Error>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Picture {
     /// The pixels, and properties of the file from which they were read, such as its precision.
     pub(super) coded: film::Picture,
@@ -154,6 +154,13 @@ impl Picture {
     }
 }
 
+/// Writes the size, without the pixels.
+impl fmt::Debug for Picture {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Picture {{ {} × {}, .. }}", self.width(), self.height())
+    }
+}
+
 /// Makes a picture of the film's pixels. What scene it shows is unknown.
 impl From<Film> for Picture {
     fn from(film: Film) -> Self {
@@ -171,7 +178,7 @@ impl From<Film> for Picture {
 /// assert!(exact.bounds.iter().all(|&bound| bound < 1e-9));
 /// # Ok::<(), pinhole::Error>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Exact {
     /// Mean colour of each pixel, without sampling noise.
@@ -179,6 +186,15 @@ pub struct Exact {
     /// Error bound of each pixel, row by row: how far the mean of a channel may be from its true
     /// value, in linear light.
     pub bounds: Vec<f32>,
+}
+
+/// Writes the picture's size and the greatest error bound.
+impl fmt::Debug for Exact {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut fields = f.debug_struct("Exact");
+        fields.field("picture", &self.picture);
+        fields.field("bound", &self.bound()).finish_non_exhaustive()
+    }
 }
 
 impl Exact {

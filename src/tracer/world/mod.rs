@@ -16,7 +16,7 @@ pub(crate) use self::{
     precision::{Geometry, Precision},
 };
 
-use std::{cmp::Ordering, convert::Infallible, sync::atomic::AtomicBool};
+use std::{cmp::Ordering, convert::Infallible, fmt, sync::atomic::AtomicBool};
 
 use glam::DVec2;
 
@@ -39,7 +39,6 @@ use crate::{
 
 /// The scene prepared for one picture. It is built once and can then be queried at any sample point
 /// from any thread.
-#[derive(Debug)]
 pub struct World {
     basis: Basis,
     pub(crate) geometry: Geometry,
@@ -66,6 +65,18 @@ struct Nearest<T: Real> {
     /// Whether the crossing is the ray's second one with the object.
     second: bool,
     crossing: Crossing<T>,
+}
+
+/// Writes the picture's area, the number of objects and the palette.
+impl fmt::Debug for World {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut fields = f.debug_struct("World");
+        fields.field("picture", &self.picture());
+        fields.field("objects", &self.object_count());
+        fields
+            .field("palette", &self.palette())
+            .finish_non_exhaustive()
+    }
 }
 
 impl World {

@@ -307,6 +307,25 @@ fn pixels_of_another_program_are_a_picture() {
 }
 
 #[test]
+fn debug_texts_are_short() {
+    let scene = Scene::parse(pinhole::scene::SMALLEST).unwrap();
+    let scene = scene.with_set("image.width=64").unwrap();
+    let scene = scene.with_set("image.height=36").unwrap();
+    let exact = scene.render_exact().unwrap();
+    assert_eq!(format!("{:?}", exact.picture), "Picture { 64 × 36, .. }");
+    assert_eq!(
+        format!("{:?}", exact.picture.film()),
+        "Film { 64 × 36, .. }"
+    );
+    let world = pinhole::tracer::World::new(scene.data());
+    for text in [format!("{exact:?}"), format!("{world:?}")] {
+        assert!(text.len() < 500, "{text}");
+    }
+    let text = format!("{scene:?}");
+    assert!(!text.contains("OnceLock"), "{text}");
+}
+
+#[test]
 fn errors_name_the_file_and_the_reason() {
     let folder = Folder::with([("text.png", "camera {}"), ("a.pdf", "%PDF-1.7")]);
     let scene = Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }").unwrap();
