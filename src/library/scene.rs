@@ -7,7 +7,7 @@ use crate::{
     area::Area,
     diagnostic::{Diagnostic, Mistakes},
     format::format,
-    render::{self, Control},
+    render::{self, Control, RenderError},
     sampling::Sampling,
     scene::{self, Scene as SceneData},
     source::{Source, Sources},
@@ -130,10 +130,53 @@ impl Scene {
     ///
     /// There is not enough memory, or no thread can be started.
     pub fn render(&self) -> Result<Picture, Error> {
-        let (world, size) = (World::new(&self.data), self.size());
+        self.render_with(self.size(), &Control::default())
+    }
+
+    /// Renders an area of the picture as [`render`](Self::render) does. `control` limits the
+    /// threads, reports the progress and can cancel the render. The pixels are those of the whole
+    /// picture.
+    ///
+    /// ```
+    /// use std::{
+    ///     num::NonZero,
+    ///     sync::atomic::{AtomicBool, AtomicU64, Ordering},
+    /// };
+    ///
+    /// use pinhole::{area::Area, render::Control};
+    ///
+    /// # let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+    /// #     checkerboard {}  image { width 40  height 30 } sampler { per_pixel 16 }")?;
+    /// let (done, stop) = (AtomicU64::new(0), AtomicBool::new(false));
+    /// let control = Control {
+    ///     threads: NonZero::new(1),
+    ///     progress: &|samples| {
+    ///         done.fetch_add(samples, Ordering::Relaxed);
+    ///     },
+    ///     cancel: &stop, // another thread may set it
+    /// };
+    /// let middle = Area { x: 10, y: 10, width: 20, height: 10 };
+    /// let picture = scene.render_with(middle, &control)?;
+    /// assert_eq!((picture.width(), picture.height()), (20, 10));
+    /// assert_eq!(done.into_inner(), 20 * 10 * 16);
+    /// # Ok::<(), pinhole::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The area has no pixels or does not lie in the picture, the render was cancelled, there is
+    /// not enough memory, or no thread can be started.
+    pub fn render_with(&self, area: Area, control: &Control) -> Result<Picture, Error> {
+        let size = self.size();
+        let world = World::new_unless(&self.data, control.cancel).map_err(RenderError::from)?;
         let sampling = Sampling::new(&self.data.sampler, size.width, size.height);
-        let film = render::render(&world, &sampling, size, &Control::default())?;
-        Ok(Picture::rendered(film, &self.sources))
+        let film = render::render(&world, &sampling, area, control)?;
+        let mut picture = Picture::rendered(film, &self.sources);
+        if area != size {
+            picture.coded.crop = Some(area);
+            picture.coded.size = Some([size.width, size.height]);
+        }
+        Ok(picture)
     }
 
     /// Computes the picture without samples, whatever the scene's sampler says. Each pixel's mean

@@ -12,9 +12,10 @@ mod problems_as_json;
 use std::{
     fs,
     path::{Path, PathBuf},
+    sync::atomic::AtomicBool,
 };
 
-use pinhole::{Color, Error, Method, Picture, Scene, SceneData};
+use pinhole::{Color, Error, Method, Picture, Scene, SceneData, area::Area, render::Control};
 
 use crate::{program::Folder, scenes::example_text};
 
@@ -225,6 +226,53 @@ fn an_exact_scene_is_computed_by_either_way_to_render() {
     assert_eq!(rendered.pixels(), exact.picture.pixels());
     assert_eq!(exact.bounds.len(), 32 * 18);
     assert!(exact.bound() < 1e-9, "{}", exact.bound());
+}
+
+#[test]
+fn an_area_is_rendered_under_control() {
+    let folder = Folder::with([("a.scn", &example_text("figure_9_9")[..])]);
+    let scene = Scene::parse(&example_text("figure_9_9")).unwrap();
+    let scene = scene.with_set("image.width=96").unwrap();
+    let scene = scene.with_set("image.height=54").unwrap();
+    let area: Area = "40,20,30,20".parse().unwrap();
+    for method in ["multi_jittered", "exact"] {
+        let scene = scene.with_set(&format!("sampler.method={method}")).unwrap();
+        let part = scene.render_with(area, &Control::default()).unwrap();
+        let whole = scene.render().unwrap();
+        assert_eq!(part.film(), &whole.film().part(area).unwrap());
+        // The picture knows its place in the whole picture, and so does its file.
+        let verdict = scene.grade(&part).unwrap().to_string();
+        assert!(verdict.starts_with("right"), "{verdict}");
+        for ending in ["png", "exr"] {
+            let sets = scene.sources().sets.iter();
+            let sets: String = sets.map(|set| format!("--set {} ", set.text())).collect();
+            let line = format!("render a.scn {sets} --crop {area} -o program.{ending}");
+            assert_eq!(folder.run(&line).status, 0, "{line}");
+            let [own, program] =
+                ["library", "program"].map(|name| folder.path(&format!("{name}.{ending}")));
+            part.save(&own).unwrap();
+            let [own, program] = [own, program].map(|path| fs::read(path).unwrap());
+            assert!(own == program, "{method} {ending}");
+        }
+    }
+    let cancel = AtomicBool::new(true);
+    let control = Control {
+        cancel: &cancel,
+        ..Control::default()
+    };
+    let whole = Area::whole(96, 54);
+    let beyond = Area::whole(97, 54);
+    for (area, control, expected) in [
+        (whole, control, "interrupted"),
+        (
+            beyond,
+            Control::default(),
+            "the part 0,0,97,54 has no pixels, or does not lie in the picture of 96 × 54",
+        ),
+    ] {
+        let error = scene.render_with(area, &control).unwrap_err();
+        assert_eq!(error.to_string(), expected);
+    }
 }
 
 #[test]

@@ -133,7 +133,8 @@ fn a_name_that_the_language_does_not_have_is_one_mistake() {
         }
     }
     let mut repeated = read(
-        "camera { eye (0, 2, 8)  lookat (0, 1, 0) }  sphere A for i < 2, j < 2 { center (i, j, 0) }",
+        "camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+        sphere A for i < 2, j < 2 { center (i, j, 0) }",
     );
     assert!(repeated.check().is_ok());
     repeated.objects_mut()[1].name = Some("A[0, 1] { } sphere B".to_owned());
