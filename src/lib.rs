@@ -7,7 +7,7 @@
 //! use pinhole::Scene;
 //!
 //! let text = "camera { eye (0, 2, 8)  lookat (0, 1, 0) }  sphere { center (0, 1, 0) }";
-//! let scene = Scene::parse(text)?.with_set("image.width=160")?.with_set("image.height=90")?;
+//! let scene = Scene::parse(text)?.with_sets(["image.width=160", "image.height=90"])?;
 //! let picture = scene.render()?;
 //! assert_eq!(picture.to_rgb8().len(), 160 * 90 * 3);
 //! # let folder = tempfile::tempdir()?;

@@ -1,6 +1,6 @@
 //! A scene: its text, and what the text means.
 
-use std::{fmt, str::FromStr, sync::Arc};
+use std::{collections::HashSet, fmt, str::FromStr, sync::Arc};
 
 use super::{Error, Exact, Picture};
 use crate::{
@@ -76,15 +76,39 @@ impl Scene {
 
     /// Returns the scene with one more setting in the form of the option `--set`, for example
     /// `camera.roll=8deg`. It changes a field of the camera, the image, the sampler or a named
-    /// object, or the value of a `let`.
+    /// object, or the value of a `let`. An earlier setting of the same target is replaced.
     ///
     /// # Errors
     ///
     /// There is nothing of this name, or the value is not allowed for it.
     pub fn with_set(&self, setting: &str) -> Result<Self, Mistakes> {
-        let mut sources = (*self.sources).clone();
-        sources.push_set(setting);
-        Self::read(sources)
+        self.with_sets([setting])
+    }
+
+    /// Returns the scene with several more settings, as [`with_set`](Self::with_set) does. The text
+    /// is read only once, and values that are allowed only together may be set.
+    ///
+    /// ```
+    /// let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0)  far 20 }")?;
+    /// assert!(scene.with_set("camera.near=30").is_err());
+    /// let farther = scene.with_sets(["camera.near=30", "camera.far=40"])?;
+    /// assert_eq!(farther.data().camera.far, Some(40.0));
+    /// # Ok::<(), pinhole::Mistakes>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// There is nothing of a setting's name, or a value is not allowed for it.
+    pub fn with_sets<S: AsRef<str>>(
+        &self,
+        settings: impl IntoIterator<Item = S>,
+    ) -> Result<Self, Mistakes> {
+        let settings: Vec<S> = settings.into_iter().collect();
+        let targets: HashSet<_> = settings.iter().map(|set| target(set.as_ref())).collect();
+        let earlier = self.sources.sets.iter().map(Source::text);
+        let kept = earlier.filter(|set| !targets.contains(&target(set)));
+        let sources = Sources::new(self.sources.file.clone()).with_sets(kept);
+        Self::read(sources.with_sets(&settings))
     }
 
     fn read(sources: Sources) -> Result<Self, Mistakes> {
@@ -218,6 +242,12 @@ impl FromStr for Scene {
     fn from_str(text: &str) -> Result<Self, Mistakes> {
         Self::parse(text)
     }
+}
+
+/// Returns the target of a setting: the words before its `=`.
+fn target(setting: &str) -> Vec<&str> {
+    let (target, _) = setting.split_once('=').unwrap_or((setting, ""));
+    target.split('.').map(str::trim).collect()
 }
 
 /// Returns a text in the canonical layout, or as it is if it cannot be parsed.

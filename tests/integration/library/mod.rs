@@ -15,7 +15,9 @@ use std::{
     sync::atomic::AtomicBool,
 };
 
-use pinhole::{Color, Error, Method, Picture, Scene, SceneData, area::Area, render::Control};
+use pinhole::{
+    Color, Error, Method, Picture, Scene, SceneData, area::Area, render::Control, source::Sources,
+};
 
 use crate::{program::Folder, scenes::example_text};
 
@@ -226,6 +228,54 @@ fn an_exact_scene_is_computed_by_either_way_to_render() {
     assert_eq!(rendered.pixels(), exact.picture.pixels());
     assert_eq!(exact.bounds.len(), 32 * 18);
     assert!(exact.bound() < 1e-9, "{}", exact.bound());
+}
+
+#[test]
+fn a_later_setting_replaces_an_earlier_one_of_the_same_target() {
+    let scene = Scene::parse(
+        "let h = 1
+        camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+        box B { min (0, 0, 0)  max (1, h, 1) }",
+    );
+    let scene = scene.unwrap();
+    let texts = |scene: &Scene| {
+        let sets = scene.sources().sets.iter();
+        sets.map(|set| format!("{}: {}", set.name(), set.text()))
+            .collect::<Vec<_>>()
+    };
+    let mut frame = scene.clone();
+    for step in 1..=3 {
+        let h = format!("h={step}");
+        let eye = format!("camera.eye=(0, {step}, 9)");
+        frame = frame.with_set(&h).unwrap().with_set(&eye).unwrap();
+    }
+    assert_eq!(
+        texts(&frame),
+        ["--set #1: h=3", "--set #2: camera.eye=(0, 3, 9)"]
+    );
+    // In every order, the scene is that of all settings together.
+    let steps = [
+        "B.center=(5, 5, 5)",
+        "B.size=(2, 2, 2)",
+        "camera.direction=(0, 0, -1)",
+        " B . center = (6, 5, 5)",
+        "h=2",
+        "camera.lookat=(0, 0, 0)",
+        "B.size=(1, 2, 3)",
+        "camera.direction=(0, 1, -1)",
+    ];
+    let sizes = ["B.center=(0, 0, 0)", "B.size=(1, 1, 1)"];
+    let start = scene.with_sets(sizes).unwrap();
+    let one_by_one = steps
+        .iter()
+        .fold(start.clone(), |scene, set| scene.with_set(set).unwrap());
+    let all = Sources::new(scene.sources().file.clone());
+    let all = pinhole::scene::read(&all.with_sets(sizes).with_sets(steps)).scene;
+    assert_eq!(one_by_one.data(), &all.unwrap());
+    assert_eq!(one_by_one.data(), start.with_sets(steps).unwrap().data());
+    assert_eq!(texts(&one_by_one).len(), 5);
+    let wrong = scene.with_sets(["h=-1", "camera.rol=2deg"]).unwrap_err();
+    assert_eq!(wrong.iter().count(), 2, "{wrong}");
 }
 
 #[test]
