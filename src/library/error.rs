@@ -40,6 +40,9 @@ pub enum Error {
         /// Reason why the file is no picture that can be read.
         error: crate::film::Unreadable,
     },
+    /// A picture does not carry its scene.
+    #[error("the picture carries no scene")]
+    NoScene,
     /// A file cannot be read.
     #[error("cannot read {}: {error}", path.display())]
     Read {

@@ -6,6 +6,8 @@
 
 mod error;
 mod mistakes;
+#[cfg(feature = "png")]
+mod opening;
 mod picture;
 #[cfg(feature = "read")]
 mod reading;

@@ -109,6 +109,16 @@ impl Picture {
         self.film().pixels()
     }
 
+    /// Returns the means of red, green and blue of the pixel in column `x` and row `y`, in linear
+    /// light.
+    ///
+    /// # Panics
+    ///
+    /// The column or the row is outside of the picture.
+    pub fn pixel(&self, x: u32, y: u32) -> [f64; 3] {
+        self.film().pixel(x, y)
+    }
+
     /// Returns the pixels as [`pixels`](Self::pixels) does, without copying them.
     pub fn into_pixels(self) -> Vec<[f64; 3]> {
         self.coded.film.into_pixels()

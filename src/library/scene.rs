@@ -111,7 +111,7 @@ impl Scene {
         Self::read(sources.with_sets(&settings))
     }
 
-    fn read(sources: Sources) -> Result<Self, Mistakes> {
+    pub(super) fn read(sources: Sources) -> Result<Self, Mistakes> {
         let sources = Arc::new(sources);
         let reading = scene::read(&sources);
         match reading.scene {
@@ -220,6 +220,27 @@ impl Scene {
 
     pub(super) fn size(&self) -> Area {
         Area::whole(self.data.image.width, self.data.image.height)
+    }
+}
+
+impl Picture {
+    /// Returns the scene that the picture shows. It is known if the picture was rendered, or read
+    /// from a PNG that carries its scene.
+    ///
+    /// ```
+    /// let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }")?;
+    /// let picture = scene.with_sets(["image.width=40", "image.height=30"])?.render()?;
+    /// let rolled = picture.scene()?.with_set("camera.roll=8deg")?;
+    /// assert_eq!(rolled.data().image.width, 40);
+    /// # Ok::<(), pinhole::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The scene is unknown, or has mistakes.
+    pub fn scene(&self) -> Result<Scene, Error> {
+        let sources = self.sources().ok_or(Error::NoScene)?;
+        Ok(Scene::read(sources.clone())?)
     }
 }
 

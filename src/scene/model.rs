@@ -185,6 +185,10 @@ impl Object {
         }
     }
 
+    fn is_named(&self, name: &str) -> bool {
+        self.name.as_deref() == Some(name)
+    }
+
     /// Returns whether two objects come from the same block, i.e. are repetitions of one object.
     pub fn is_beside(&self, other: &Self) -> bool {
         !self.indices.is_empty() && self.span == other.span
@@ -192,6 +196,33 @@ impl Object {
 }
 
 impl Scene {
+    /// Returns the object with a name, such as `Ball` or `Ball[3, 1]`.
+    ///
+    /// ```
+    /// let scene = pinhole::Scene::parse(
+    ///     "camera { eye (0, 2, 8)  lookat (0, 1, 0) }  sphere Ball { center (0, 1, 0) }",
+    /// )?;
+    /// let mut data = scene.data().clone();
+    /// assert_eq!(data.object("Ball").unwrap().shape.kind(), "sphere");
+    /// assert_eq!(data.object("Bell"), None);
+    /// data.object_mut("Ball").unwrap().name = Some("Moon".to_owned());
+    /// assert!(pinhole::Scene::from_data(&data)?.to_string().contains("sphere Moon"));
+    /// # Ok::<(), pinhole::Mistakes>(())
+    /// ```
+    pub fn object(&self, name: &str) -> Option<&Object> {
+        self.objects.iter().find(|object| object.is_named(name))
+    }
+
+    /// Returns a mutable reference to the object with a name. The objects are copied first if
+    /// another scene shares them.
+    pub fn object_mut(&mut self, name: &str) -> Option<&mut Object> {
+        let index = self
+            .objects
+            .iter()
+            .position(|object| object.is_named(name))?;
+        self.objects_mut().get_mut(index)
+    }
+
     /// Returns a mutable reference to the objects. They are copied first if another scene shares
     /// them.
     pub fn objects_mut(&mut self) -> &mut Vec<Object> {

@@ -274,7 +274,9 @@ fn a_later_setting_replaces_an_earlier_one_of_the_same_target() {
     assert_eq!(one_by_one.data(), &all.unwrap());
     assert_eq!(one_by_one.data(), start.with_sets(steps).unwrap().data());
     assert_eq!(texts(&one_by_one).len(), 5);
-    let wrong = scene.with_sets(["h=-1", "camera.rol=2deg"]).unwrap_err();
+    let wrong = scene
+        .with_sets(["camera.near=-1", "camera.rol=2deg"])
+        .unwrap_err();
     assert_eq!(wrong.iter().count(), 2, "{wrong}");
 }
 
@@ -421,6 +423,48 @@ fn debug_texts_are_short() {
     }
     let text = format!("{scene:?}");
     assert!(!text.contains("OnceLock"), "{text}");
+}
+
+#[test]
+fn a_scene_is_read_from_a_file_or_a_picture() {
+    let wrong = example_text("figure_9_9").replace("radius 1", "radus 1");
+    let folder = Folder::with([
+        ("a.scn", &example_text("figure_9_9")[..]),
+        ("wrong.scn", &wrong),
+    ]);
+    let scene = Scene::open(folder.path("a.scn")).unwrap();
+    let sets = ["image.width=8", "image.height=4", "camera.roll=8deg"];
+    let rolled = scene.with_sets(sets).unwrap();
+    let picture = rolled.render().unwrap();
+    picture.save(folder.path("a.png")).unwrap();
+    picture.save(folder.path("a.exr")).unwrap();
+    let opened = Picture::open(folder.path("a.png")).unwrap();
+    for again in [
+        Scene::open(folder.path("a.png")),
+        opened.scene(),
+        picture.scene(),
+    ] {
+        assert_eq!(again.unwrap().data(), rolled.data());
+    }
+    assert_eq!(picture.pixel(7, 3), *picture.pixels().last().unwrap());
+    let object = |name: &str| scene.data().object(name).map(|it| it.name.clone().unwrap());
+    assert_eq!(object("Ball").as_deref(), Some("Ball"));
+    assert_eq!(object("Bell"), None);
+
+    let error = Scene::open(folder.path("wrong.scn"))
+        .unwrap_err()
+        .to_string();
+    let path = folder.path("wrong.scn");
+    assert!(error.contains(path.to_str().unwrap()), "{error}");
+    let other = Picture::open(folder.path("a.exr")).unwrap();
+    let told = other.scene().unwrap_err().to_string();
+    assert_eq!(told, "the picture carries no scene");
+    let error = Scene::open(folder.path("none.scn")).unwrap_err();
+    let told = error.to_string();
+    assert!(
+        told.ends_with("none.scn: there is no such file or folder"),
+        "{told}"
+    );
 }
 
 #[test]
