@@ -44,7 +44,8 @@ impl Scene {
     }
 
     /// Makes a scene from data, for example from a changed copy of another scene's data. The
-    /// scene's text is generated from the data.
+    /// scene's text is generated from the data. In it, repeated objects are written one by one and
+    /// have other names: `Ball[3, 1]` becomes `Ball_3_1`.
     ///
     /// ```
     /// use pinhole::{Scene, glam::DVec3, scene::{Object, Sphere}};

@@ -176,11 +176,13 @@ impl Object {
         }
     }
 
-    /// Returns the object with a name, which no other object of the scene may have.
+    /// Returns the object with a name, which no other object of the scene may have. The object is
+    /// no longer a repetition: it has no indices.
     #[must_use]
     pub fn named(self, name: impl Into<String>) -> Self {
         Self {
             name: Some(name.into()),
+            indices: Box::default(),
             ..self
         }
     }

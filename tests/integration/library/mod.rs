@@ -136,6 +136,12 @@ fn a_repeated_object_gets_a_name_that_is_free() {
         .filter_map(|it| it.name.as_deref());
     let expected = ["Ball_0_0", "Ball_0_1", "Ball_1_0_", "Ball_1_1", "Ball_1_0"];
     assert!(names.eq(expected), "{scene}");
+
+    let mut data = Scene::parse(text).unwrap().data().clone();
+    let other = data.objects[0].clone().named("Other");
+    data.objects_mut()[0] = other;
+    let scene = Scene::from_data(&data).unwrap();
+    assert_eq!(scene.data().objects[0].name.as_deref(), Some("Other"));
 }
 
 #[test]
