@@ -1,6 +1,6 @@
 //! The error type for a text that is not a valid scene. It contains the mistakes of the text.
 
-use std::{error::Error, fmt, slice, sync::Arc};
+use std::{error::Error, fmt, slice, sync::Arc, vec};
 
 use super::Diagnostic;
 #[cfg(feature = "fancy")]
@@ -42,6 +42,12 @@ impl Mistakes {
         self.diagnostics.iter()
     }
 
+    /// Returns the number of mistakes and warnings.
+    #[allow(clippy::len_without_is_empty, reason = "there is at least one mistake")]
+    pub fn len(&self) -> usize {
+        self.diagnostics.len()
+    }
+
     /// Returns the texts to which the mistakes refer.
     pub fn sources(&self) -> &Sources {
         &self.sources
@@ -54,6 +60,15 @@ impl<'a> IntoIterator for &'a Mistakes {
 
     fn into_iter(self) -> Self::IntoIter {
         self.iter()
+    }
+}
+
+impl IntoIterator for Mistakes {
+    type Item = Diagnostic;
+    type IntoIter = vec::IntoIter<Diagnostic>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.diagnostics.into_iter()
     }
 }
 

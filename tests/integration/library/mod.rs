@@ -215,7 +215,9 @@ fn mistakes_are_displayed_as_the_program_reports_them() {
     let mistakes = Scene::parse(&wrong).unwrap_err();
     assert_eq!(format!("{mistakes}\n"), said.errors);
     assert_eq!(format!("{mistakes:?}\n"), said.errors);
-    assert_eq!(mistakes.iter().count(), 1);
+    assert_eq!(mistakes.len(), 1);
+    let all: Vec<pinhole::Diagnostic> = mistakes.clone().into_iter().collect();
+    assert!(all.iter().eq(mistakes.iter()));
     let set = Scene::parse(&example_text("figure_9_9")).unwrap();
     let said = set.with_set("camera.rol=8deg").unwrap_err().to_string();
     assert!(said.contains("did you mean `roll`"), "{said}");
@@ -529,7 +531,9 @@ fn colours_and_methods_are_read_as_the_language_writes_them() {
         let told = text.parse::<Color>().unwrap_err().to_string();
         assert!(told.contains(part), "{text}: {told}");
     }
-    for (method, _) in pinhole::schema::METHODS {
+    assert!(Method::ALL.starts_with(&Method::SAMPLED));
+    assert_eq!(Method::ALL.len(), pinhole::schema::METHODS.len());
+    for method in Method::ALL {
         assert_eq!(method.to_string().parse::<Method>(), Ok(*method));
     }
     let told = "jitter".parse::<Method>().unwrap_err().to_string();
