@@ -35,16 +35,16 @@
 //!
 //! | feature | what it adds |
 //! | --- | --- |
-//! | `png` | PNG files, which carry their scene: `Picture::save`, `film::write_png` |
+//! | `png` | PNG files, which carry their scene: `Picture::save`, `Scene::open`, `film` |
 //! | `exr` | OpenEXR files in linear light: `Picture::save`, `film::write_exr` |
 //! | `read` | pictures of any program: `Picture::open`, `Scene::grade`; includes `png` and `exr` |
-//! | `fancy` | [`Mistakes`] and `diagnostic::Report` with excerpts, as a terminal shows them |
+//! | `fancy` | [`Mistakes`] displayed with excerpts, as in a terminal: `diagnostic::Report` |
 //! | `json` | problems as lines of JSON: `diagnostic::json_lines` |
 //! | `report` | reports on accuracy and on speed: `report` |
-//! | `lsp` | the answers that editors ask for, and the language server: `editor`, `lsp` |
-//! | `preview` | notification when a scene's file is changed |
+//! | `lsp` | the answers that editors ask for, and the language server: `editor`, `lsp`, `refine` |
+//! | `preview` | notification when a scene's file is changed, and `refine` |
 //! | `studio` | the host of the page on which scenes are edited |
-//! | `cli` | the command line; includes `fancy`, `preview`, `read` and `report` |
+//! | `cli` | the command line, `editor`, `figure`; includes `fancy`, `preview`, `read`, `report` |
 //! | `files`, `pages` | parts of other features, not useful alone |
 //!
 //! # Stages
@@ -98,6 +98,9 @@
 //! and back, in rounded numbers, and `exact` integrates a pixel. `preview` reports changes of a
 //! file, and `studio` serves a page to edit a scene. `cli`, the command line, reads input, calls
 //! the other modules and prints the results.
+
+// On docs.rs, the documentation of an item says which feature it needs.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod area;
 pub mod cancel;

@@ -9,7 +9,8 @@ use crate::source::Sources;
 
 /// Error that a text is not a valid scene: its mistakes and warnings, in the order of the text.
 ///
-/// They are displayed as the command line shows them, without colour. `Debug` prints the same text,
+/// They are displayed as the command line shows them, without colour; without the feature `fancy`,
+/// each as a line with its place, and a line of help. `Debug` prints the same text,
 /// so that a `main` function that returns this error ends with a readable report.
 ///
 /// ```
@@ -43,7 +44,7 @@ impl Mistakes {
     }
 
     /// Returns the number of mistakes and warnings.
-    #[allow(clippy::len_without_is_empty, reason = "there is at least one mistake")]
+    #[expect(clippy::len_without_is_empty, reason = "there is at least one mistake")]
     pub fn len(&self) -> usize {
         self.diagnostics.len()
     }
