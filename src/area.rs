@@ -3,6 +3,11 @@
 use std::{fmt, str::FromStr};
 
 /// A rectangle of pixels. Columns and rows are counted from the picture's top left corner.
+///
+/// [`lies_in`](Self::lies_in), [`meets`](Self::meets), [`common`](Self::common) and
+/// [`with`](Self::with) work for any numbers. The other methods require that the sums `x + width`
+/// and `y + height` fit into a `u32`, as those of every part of a picture do; otherwise they may
+/// panic or return wrong areas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Area {
     /// Leftmost column.
@@ -50,14 +55,19 @@ impl Area {
             && other.rows().start < self.rows().end
     }
 
-    /// Returns the smallest area that contains both areas.
+    /// Returns the smallest area that contains both areas. A side that would be longer than
+    /// `u32::MAX` is `u32::MAX`.
     pub fn with(self, other: Self) -> Self {
         let (x, y) = (self.x.min(other.x), self.y.min(other.y));
+        let length = |end: u64, other_end: u64, start: u32| {
+            let length = end.max(other_end) - u64::from(start);
+            u32::try_from(length).unwrap_or(u32::MAX)
+        };
         Self {
             x,
             y,
-            width: (self.x + self.width).max(other.x + other.width) - x,
-            height: (self.y + self.height).max(other.y + other.height) - y,
+            width: length(self.columns().end, other.columns().end, x),
+            height: length(self.rows().end, other.rows().end, y),
         }
     }
 
@@ -69,6 +79,11 @@ impl Area {
 
     /// Returns the index of a pixel within the area, counted row by row. `x` and `y` are the
     /// pixel's column and row in the picture.
+    ///
+    /// # Panics
+    ///
+    /// May panic if the pixel lies to the left of the area or above it. An index of any other pixel
+    /// outside of the area is wrong.
     pub fn index(self, x: u32, y: u32) -> usize {
         (y - self.y) as usize * self.width as usize + (x - self.x) as usize
     }
@@ -76,6 +91,10 @@ impl Area {
     /// Divides the area into tiles, squares of side `side` in pixels, and returns them row by row.
     /// The first tile lies in the area's top left corner; tiles at the right and bottom edges are
     /// cut off.
+    ///
+    /// # Panics
+    ///
+    /// Panics if `side` is 0.
     pub fn tiles(self, side: u32) -> impl Iterator<Item = Self> {
         let starts = move |length: u32| (0..length).step_by(side as usize);
         starts(self.height).flat_map(move |top| {
@@ -91,6 +110,10 @@ impl Area {
     /// Divides the picture into a grid of squares of side `side`, in pixels, from its top left
     /// corner on. Returns the squares that overlap the area, row by row. The squares are not
     /// clipped.
+    ///
+    /// # Panics
+    ///
+    /// Panics if `side` is 0.
     pub fn grid(self, side: u32) -> impl Iterator<Item = Self> {
         let starts = move |start: u32, length: u32| {
             (start - start % side..start + length).step_by(side as usize)
@@ -116,7 +139,15 @@ impl Area {
 
     /// Returns the same area with columns and rows counted from the top left corner of `outer`,
     /// which must contain it.
+    ///
+    /// # Panics
+    ///
+    /// Panics if `outer` does not contain the area.
     pub fn within(self, outer: Self) -> Self {
+        assert!(
+            self.lies_in(outer),
+            "the area {self} does not lie in {outer}"
+        );
         Self {
             x: self.x - outer.x,
             y: self.y - outer.y,
@@ -225,5 +256,17 @@ mod tests {
             height: 1,
         };
         assert!(!huge.lies_in(left) && !huge.meets(left));
+        let both = huge.with(left);
+        assert_eq!(
+            (both.x, both.y, both.width, both.height),
+            (0, 0, u32::MAX, 4)
+        );
+    }
+
+    #[test]
+    #[should_panic(expected = "the area 0,0,4,4 does not lie in 1,0,4,4")]
+    fn an_area_is_not_within_another_beside_it() {
+        let area = Area::whole(4, 4);
+        area.within(Area { x: 1, ..area });
     }
 }

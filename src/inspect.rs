@@ -150,6 +150,12 @@ pub fn total_samples(count: Count, image: &Image) -> u64 {
 
 /// Computes the properties of a camera, and the vanishing points of the x, y and z axes. No other
 /// part of the scene is needed.
+///
+/// # Panics
+///
+/// Panics if the camera or the image was made in code rather than read from a text, and breaks a
+/// condition of the language, for example if the camera looks at its own eye. [`Scene::check`]
+/// finds such scenes.
 pub fn inspect_camera(camera: &Camera, image: &Image) -> (CameraFacts, [Option<[f64; 2]>; 3]) {
     let basis = Basis::new(camera, image);
     let points = [0, 1, 2].map(|axis| vanishing_point(image, &basis, axis));

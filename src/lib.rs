@@ -7,7 +7,7 @@
 //! use pinhole::Scene;
 //!
 //! let text = "camera { eye (0, 2, 8)  lookat (0, 1, 0) }  sphere { center (0, 1, 0) }";
-//! let scene = Scene::parse(text)?.with_set("image.width=160")?.with_set("image.height=90")?;
+//! let scene = Scene::parse(text)?.with_sets(["image.width=160", "image.height=90"])?;
 //! let picture = scene.render()?;
 //! assert_eq!(picture.to_rgb8().len(), 160 * 90 * 3);
 //! # let folder = tempfile::tempdir()?;
@@ -17,7 +17,8 @@
 //! ```
 //!
 //! - [`Scene::parse`] returns the scene, or all [`Mistakes`] of the text. Each of them is a
-//!   [`Diagnostic`] with its places and fixes. [`Scene::diagnostics`] returns the warnings.
+//!   [`Diagnostic`] with its places and fixes, and [`Mistakes::fixed`] applies them.
+//!   [`Scene::diagnostics`] returns the warnings.
 //! - [`Scene::render`] samples as the scene says; [`Scene::render_exact`] computes each pixel's
 //!   mean with a bound on its error. A [`Picture`] returns its pixels as bytes or in linear light,
 //!   and is saved to a file.
@@ -34,16 +35,16 @@
 //!
 //! | feature | what it adds |
 //! | --- | --- |
-//! | `png` | PNG files, which carry their scene: `Picture::save`, `film::write_png` |
+//! | `png` | PNG files, which carry their scene: `Picture::save`, `Scene::open`, `film` |
 //! | `exr` | OpenEXR files in linear light: `Picture::save`, `film::write_exr` |
 //! | `read` | pictures of any program: `Picture::open`, `Scene::grade`; includes `png` and `exr` |
-//! | `fancy` | [`Mistakes`] and `diagnostic::Report` with excerpts, as a terminal shows them |
+//! | `fancy` | [`Mistakes`] displayed with excerpts, as in a terminal: `diagnostic::Report` |
 //! | `json` | problems as lines of JSON: `diagnostic::json_lines` |
 //! | `report` | reports on accuracy and on speed: `report` |
-//! | `lsp` | the answers that editors ask for, and the language server: `editor`, `lsp` |
-//! | `preview` | notification when a scene's file is changed |
+//! | `lsp` | the answers that editors ask for, and the language server: `editor`, `lsp`, `refine` |
+//! | `preview` | notification when a scene's file is changed, and `refine` |
 //! | `studio` | the host of the page on which scenes are edited |
-//! | `cli` | the command line; includes `fancy`, `preview`, `read` and `report` |
+//! | `cli` | the command line, `editor`, `figure`; includes `fancy`, `preview`, `read`, `report` |
 //! | `files`, `pages` | parts of other features, not useful alone |
 //!
 //! # Stages
@@ -97,6 +98,9 @@
 //! and back, in rounded numbers, and `exact` integrates a pixel. `preview` reports changes of a
 //! file, and `studio` serves a page to edit a scene. `cli`, the command line, reads input, calls
 //! the other modules and prints the results.
+
+// On docs.rs, the documentation of an item says which feature it needs.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod area;
 pub mod cancel;
@@ -176,7 +180,7 @@ pub use crate::grading::Verdict;
 #[doc(inline)]
 pub use crate::{
     color::Color,
-    diagnostic::{Diagnostic, Mistakes},
+    diagnostic::{Applicability, Diagnostic, Mistakes},
     library::{Error, Exact, Picture, Scene},
     math::Angle,
     scene::{Method, Scene as SceneData},

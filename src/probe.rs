@@ -38,9 +38,10 @@ pub struct Probe {
 ///
 /// # Panics
 ///
-/// Panics if the scene was made in code rather than read from a text, and breaks a condition of the
-/// language. [`Scene::check`] finds such scenes.
+/// Panics if a coordinate of the point is not finite, or if the scene was made in code rather than
+/// read from a text, and breaks a condition of the language. [`Scene::check`] finds such scenes.
 pub fn probe(scene: &Scene, pixel: DVec2) -> Probe {
+    assert!(pixel.is_finite(), "the point {pixel} is not finite");
     let half = DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height)) / 2.0;
     let world = World::for_rays(scene, (pixel - half).abs());
     let (direction, hits) = ray(&world, pixel);

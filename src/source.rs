@@ -7,7 +7,7 @@
 
 mod lines;
 
-use std::{ops::Range, sync::OnceLock};
+use std::{fmt, ops::Range, sync::OnceLock};
 
 #[doc(hidden)]
 pub use lines::{Encoding, Lines};
@@ -141,7 +141,7 @@ pub struct LineColumn {
 }
 
 /// A source text with its name.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Source {
     name: String,
     text: String,
@@ -158,6 +158,15 @@ impl PartialEq for Source {
 }
 
 impl Eq for Source {}
+
+/// Writes the name and the text.
+impl fmt::Debug for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut fields = f.debug_struct("Source");
+        fields.field("name", &self.name);
+        fields.field("text", &self.text).finish_non_exhaustive()
+    }
+}
 
 impl Source {
     /// Makes a source from a file's bytes. Each byte that is not valid UTF-8 becomes a `_`, so that

@@ -296,6 +296,21 @@ impl Edit {
 
 /// Applies the edits of `fix` that belong to `source` to `text`, the text of this source, and
 /// returns the result.
+///
+/// The edits' places are those in the text in which the problem was found. In the result, the
+/// places of other fixes are no longer right, so never apply a second fix to it: read the result
+/// again, or use [`Mistakes::fixed`](super::Mistakes::fixed), which applies the fixes of all
+/// mistakes.
+///
+/// ```
+/// use pinhole::{Scene, diagnostic::apply, source::SourceId};
+///
+/// let text = "camera { eye (0, 2, 8)  lookt (0, 1, 0) }  checkerboard {}";
+/// let mistakes = Scene::parse(text).unwrap_err();
+/// let fix = &mistakes.iter().next().unwrap().fixes[0];
+/// let text = apply(fix, SourceId::File, text);
+/// assert_eq!(text, "camera { eye (0, 2, 8)  lookat (0, 1, 0) }  checkerboard {}");
+/// ```
 pub fn apply(fix: &Fix, source: SourceId, text: &str) -> String {
     let mut applied = String::with_capacity(text.len());
     let mut at = 0;

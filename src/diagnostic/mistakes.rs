@@ -1,6 +1,6 @@
 //! The error type for a text that is not a valid scene. It contains the mistakes of the text.
 
-use std::{error::Error, fmt, slice, sync::Arc};
+use std::{error::Error, fmt, slice, sync::Arc, vec};
 
 use super::Diagnostic;
 #[cfg(feature = "fancy")]
@@ -9,7 +9,8 @@ use crate::source::Sources;
 
 /// Error that a text is not a valid scene: its mistakes and warnings, in the order of the text.
 ///
-/// They are displayed as the command line shows them, without colour. `Debug` prints the same text,
+/// They are displayed as the command line shows them, without colour; without the feature `fancy`,
+/// each as a line with its place, and a line of help. `Debug` prints the same text,
 /// so that a `main` function that returns this error ends with a readable report.
 ///
 /// ```
@@ -42,6 +43,12 @@ impl Mistakes {
         self.diagnostics.iter()
     }
 
+    /// Returns the number of mistakes and warnings.
+    #[expect(clippy::len_without_is_empty, reason = "there is at least one mistake")]
+    pub fn len(&self) -> usize {
+        self.diagnostics.len()
+    }
+
     /// Returns the texts to which the mistakes refer.
     pub fn sources(&self) -> &Sources {
         &self.sources
@@ -57,6 +64,15 @@ impl<'a> IntoIterator for &'a Mistakes {
     }
 }
 
+impl IntoIterator for Mistakes {
+    type Item = Diagnostic;
+    type IntoIter = vec::IntoIter<Diagnostic>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.diagnostics.into_iter()
+    }
+}
+
 /// Writes a report of all mistakes.
 #[cfg(feature = "fancy")]
 impl fmt::Display for Mistakes {
@@ -66,7 +82,8 @@ impl fmt::Display for Mistakes {
     }
 }
 
-/// Writes one line for each mistake. Reports are drawn only with the feature `fancy`.
+/// Writes one line for each mistake, and below it the help. Reports with excerpts of the text need
+/// the feature `fancy`.
 #[cfg(not(feature = "fancy"))]
 impl fmt::Display for Mistakes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -78,6 +95,9 @@ impl fmt::Display for Mistakes {
                 let name = self.sources.get(label.span.source).name();
                 let place = self.sources.place(label.span);
                 write!(f, " ({name}:{}:{})", place.line, place.column)?;
+            }
+            if let Some(help) = &it.help {
+                write!(f, "\n  help: {}", help.replace('\n', "\n  "))?;
             }
         }
         Ok(())
@@ -91,3 +111,25 @@ impl fmt::Debug for Mistakes {
 }
 
 impl Error for Mistakes {}
+
+#[cfg(all(test, not(feature = "fancy")))]
+mod tests {
+    use crate::Scene;
+
+    #[test]
+    fn a_report_without_excerpts_has_the_place_and_the_help() {
+        let text = "camera { eye (0, 2, 8)\n  lookt (0, 1, 0) }\nspheree { center (0, 1, 0) }";
+        let report = Scene::parse(text).unwrap_err().to_string();
+        let lines: Vec<_> = report.lines().collect();
+        assert!(
+            lines[0].starts_with("error[pinhole::unknown_field]: "),
+            "{report}"
+        );
+        assert!(lines[0].ends_with(" (scene:2:3)"), "{report}");
+        assert!(
+            lines[1].starts_with("  help: did you mean `lookat`?"),
+            "{report}"
+        );
+        assert!(lines[2].ends_with(" (scene:3:1)"), "{report}");
+    }
+}

@@ -10,6 +10,7 @@ use super::{
 use crate::{
     schema::{self, predefined},
     source::Span,
+    syntax,
 };
 
 /// A definition or a use of a name.
@@ -92,9 +93,7 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
     renamable(analysis, at)?;
     let occurrences = occurrences(analysis, at);
     let (name, space) = name_at(analysis, at).ok_or("no name stands here")?;
-    let starts_well = new.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
-    let is_name = starts_well && new.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-    if !is_name {
+    if !syntax::is_name(new) {
         return Err(format!(
             "`{new}` is no name: a name is made of the letters a to z, digits and `_`, and does not start with a digit"
         ));

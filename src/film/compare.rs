@@ -176,7 +176,8 @@ fn difference(p: [f64; 3], q: [f64; 3]) -> (usize, f64) {
     (channel.unwrap_or(0), most)
 }
 
-/// Returns the root mean square of the differences of two pictures, in linear light.
+/// Returns the root mean square of the differences of two pictures, in linear light. It is NaN if a
+/// value of a pixel is NaN, and 0 if the pictures have no pixels.
 ///
 /// # Errors
 ///
@@ -187,7 +188,7 @@ pub fn rmse(a: &Film, b: &Film) -> Result<f64, SizesDiffer> {
     let sum: f64 = squares
         .map(|(p, q)| (0..3).map(|i| (p[i] - q[i]) * (p[i] - q[i])).sum::<f64>())
         .sum();
-    Ok((sum / (3.0 * a.pixels().len() as f64)).sqrt())
+    Ok((sum / (3.0 * a.pixels().len().max(1) as f64)).sqrt())
 }
 
 /// Draws a heat map of the differences between two pictures of the same size. A pixel is black if

@@ -53,7 +53,7 @@ pub use self::{
     },
     memory::TooLarge,
     picture::{Coding, Opacity, Picture, Rounding},
-    pixels::{AsBytes, AsFloats, Film, Pixel, certified},
+    pixels::{AsBytes, AsFloats, Film, Pixel, WrongPixelCount, certified},
     srgb::Encoder,
 };
 #[cfg(feature = "read")]

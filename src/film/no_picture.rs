@@ -7,7 +7,7 @@ const BEGINNINGS: [(&[u8], &str); 8] = [
         b"version https://git-lfs",
         "a pointer of Git LFS: `git lfs pull` fetches the picture",
     ),
-    (b"%PDF", "a PDF: hand in the picture itself"),
+    (b"%PDF", "a PDF: use the picture in it, as a PNG"),
     (
         b"PK\x03\x04",
         "a zip file: unpack it, or end its name in .zip",
@@ -32,7 +32,7 @@ pub(super) fn of(bytes: &[u8]) -> Option<&'static str> {
         return Some("an empty file");
     }
     if bytes.get(4..8) == Some(b"ftyp") && CAMERAS.contains(&bytes.get(8..12)?) {
-        return Some("HEIC, as telephones write it: hand in what the program wrote, as PNG");
+        return Some("HEIC, as telephones write it: use the program's own file, as a PNG");
     }
     let is = |(beginning, _): &&(&[u8], &str)| bytes.trim_ascii_start().starts_with(beginning);
     BEGINNINGS.iter().find(is).map(|(_, what)| *what)

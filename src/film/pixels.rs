@@ -1,5 +1,9 @@
 //! A picture in memory: its pixels, row by row.
 
+use std::fmt;
+
+use thiserror::Error;
+
 use super::{
     memory::{self, TooLarge},
     srgb::Encoder,
@@ -102,8 +106,20 @@ impl AsBytes for [u8; 3] {
     }
 }
 
+/// Error: a list has not one pixel for each place of a picture, or the picture has no places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("{count} pixels do not make a picture of {width} × {height}")]
+pub struct WrongPixelCount {
+    /// Number of columns of the picture.
+    pub width: u32,
+    /// Number of rows of the picture.
+    pub height: u32,
+    /// Number of pixels in the list.
+    pub count: usize,
+}
+
 /// A picture in memory. By default, a pixel is a colour in linear light, as 64-bit floats.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Film<P = [f64; 3]> {
     width: u32,
     height: u32,
@@ -111,8 +127,15 @@ pub struct Film<P = [f64; 3]> {
     pixels: Vec<P>,
 }
 
+/// Writes the size, without the pixels.
+impl<P> fmt::Debug for Film<P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Film {{ {} × {}, .. }}", self.width, self.height)
+    }
+}
+
 impl<P: Pixel> Film<P> {
-    /// Makes a black picture.
+    /// Makes a black picture. It may have no pixels, but then it cannot be written to a file.
     ///
     /// # Errors
     ///
@@ -125,6 +148,27 @@ impl<P: Pixel> Film<P> {
             width,
             height,
             pixels: vec![P::default(); width as usize * height as usize],
+        })
+    }
+
+    /// Makes a picture from its pixels, row by row from the top.
+    ///
+    /// # Errors
+    ///
+    /// The number of pixels is not `width` · `height`, or is 0.
+    pub fn from_pixels(width: u32, height: u32, pixels: Vec<P>) -> Result<Self, WrongPixelCount> {
+        let count = pixels.len();
+        if count == 0 || count as u64 != Area::whole(width, height).pixels() {
+            return Err(WrongPixelCount {
+                width,
+                height,
+                count,
+            });
+        }
+        Ok(Self {
+            width,
+            height,
+            pixels,
         })
     }
 
@@ -233,7 +277,16 @@ impl<P: Pixel> Film<P> {
 /// Returns the number of pixels whose bytes of sRGB are certain, i.e. the same for all colours
 /// within the error bound. `bounds` contains the error bound of each pixel's colour, in linear
 /// light.
+///
+/// # Panics
+///
+/// The number of error bounds is not that of the pixels.
 pub fn certified(film: &Film, bounds: &[f32]) -> u64 {
+    assert_eq!(
+        film.pixels.len(),
+        bounds.len(),
+        "there is not one error bound for each pixel"
+    );
     let encoder = Encoder::default();
     let is_certain = |&(&light, &bound): &(&[f64; 3], &f32)| {
         <[u8; 3]>::is_certain(light, bound.into(), &encoder)

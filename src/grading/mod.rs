@@ -170,12 +170,16 @@ impl Reference {
         Self { effort, ..self }
     }
 
-    /// Judges a picture. `comparison` is its comparison with the exact picture. `jpeg` says how its
-    /// file is coded, if it is a JPEG.
+    /// Judges a picture. `comparison` is its comparison with the exact picture, which
+    /// [`compare`](Self::compare) returns. `jpeg` says how its file is coded, if it is a JPEG.
     ///
     /// # Errors
     ///
     /// Fails if it is cancelled.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the picture or the comparison has another size than the exact picture.
     pub fn judge(
         &self,
         picture: &Picture,
@@ -183,6 +187,14 @@ impl Reference {
         comparison: &Comparison,
         cancel: &AtomicBool,
     ) -> Result<Verdict, RenderError> {
+        let size = [self.part.width, self.part.height];
+        let film = &picture.film;
+        for given in [
+            [film.width(), film.height()],
+            [comparison.width, comparison.height],
+        ] {
+            assert_eq!(given, size, "the picture to judge has another size");
+        }
         if comparison.is_equal() {
             return Ok(Verdict::without_mistakes(Kind::Right, &self.scene));
         }

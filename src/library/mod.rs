@@ -5,6 +5,9 @@
 //! modules work on them. The crate's root exports the types.
 
 mod error;
+mod mistakes;
+#[cfg(feature = "png")]
+mod opening;
 mod picture;
 #[cfg(feature = "read")]
 mod reading;

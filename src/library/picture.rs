@@ -1,14 +1,16 @@
 //! Pictures in memory.
 
-use std::sync::Arc;
+use std::{fmt, sync::Arc};
 
 use super::Error;
 use crate::{
+    color::Color,
     film::{self, AsBytes, Encoder, Film, Rounding},
     source::Sources,
 };
 
-/// A picture in memory. It was rendered, or read from a file that any program may have written.
+/// A picture in memory. It was rendered, read from a file that any program may have written, or
+/// made from pixels.
 ///
 /// ```
 /// let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }")?;
@@ -18,7 +20,7 @@ use crate::{
 /// assert_eq!(picture.pixels()[0], [0.0; 3]); // black in the top left corner
 /// # Ok::<(), pinhole::Error>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Picture {
     /// The pixels, and properties of the file from which they were read, such as its precision.
     pub(super) coded: film::Picture,
@@ -33,12 +35,62 @@ pub struct Picture {
 impl Picture {
     /// Makes a picture from pixels that were rendered, and the sources of their scene.
     pub(super) fn rendered(film: Film, sources: &Arc<Sources>) -> Self {
+        let coded = film::Picture::new(film, Rounding::Float);
+        Self::of(coded, Some(Arc::clone(sources)))
+    }
+
+    fn of(coded: film::Picture, sources: Option<Arc<Sources>>) -> Self {
         Self {
-            coded: film::Picture::new(film, Rounding::Float),
+            coded,
             #[cfg(feature = "read")]
             jpeg: None,
-            sources: Some(Arc::clone(sources)),
+            sources,
         }
+    }
+
+    /// Makes a picture from pixels of another program, row by row from the top, in linear light
+    /// from 0 to 1.
+    ///
+    /// ```
+    /// use pinhole::{Picture, Scene};
+    ///
+    /// let gray = Picture::from_pixels(80, 45, vec![[0.2; 3]; 80 * 45])?;
+    /// # let scene = Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+    /// #     checkerboard {}  image { width 80  height 45 }")?;
+    /// assert!(gray.rmse(&scene.render()?)? > 0.1);
+    /// assert!(Picture::from_pixels(80, 44, gray.into_pixels()).is_err());
+    /// # Ok::<(), pinhole::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The number of pixels is not `width` · `height`, or is 0.
+    pub fn from_pixels(width: u32, height: u32, pixels: Vec<[f64; 3]>) -> Result<Self, Error> {
+        Ok(Film::from_pixels(width, height, pixels)?.into())
+    }
+
+    /// Makes a picture from the bytes of red, green and blue of each pixel, row by row from the
+    /// top, in sRGB. [`to_rgb8`](Self::to_rgb8) returns the same bytes.
+    ///
+    /// ```
+    /// use pinhole::Picture;
+    ///
+    /// let picture = Picture::from_rgb8(2, 1, &[0, 0, 0, 255, 165, 0])?;
+    /// assert_eq!(picture.pixels()[0], [0.0; 3]);
+    /// assert_eq!(picture.to_rgb8(), [0, 0, 0, 255, 165, 0]);
+    /// # Ok::<(), pinhole::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The number of bytes is not 3 · `width` · `height`, or is 0.
+    pub fn from_rgb8(width: u32, height: u32, bytes: &[u8]) -> Result<Self, Error> {
+        let (colors, rest) = bytes.as_chunks::<3>();
+        // Bytes that are too few for a pixel count as one more pixel, so that they are an error.
+        let colors = colors.iter().copied().chain(rest.first().map(|_| [0; 3]));
+        let light = colors.map(|color| Color::from_bytes(color).to_linear());
+        let film = Film::from_pixels(width, height, light.collect())?;
+        Ok(Self::of(film::Picture::new(film, Rounding::Byte), None))
     }
 
     /// Returns the number of columns of pixels.
@@ -55,6 +107,16 @@ impl Picture {
     /// linear light from 0 to 1.
     pub fn pixels(&self) -> &[[f64; 3]] {
         self.film().pixels()
+    }
+
+    /// Returns the means of red, green and blue of the pixel in column `x` and row `y`, in linear
+    /// light.
+    ///
+    /// # Panics
+    ///
+    /// The column or the row is outside of the picture.
+    pub fn pixel(&self, x: u32, y: u32) -> [f64; 3] {
+        self.film().pixel(x, y)
     }
 
     /// Returns the pixels as [`pixels`](Self::pixels) does, without copying them.
@@ -82,7 +144,7 @@ impl Picture {
     }
 
     /// Returns the root mean square of the differences between two pictures, over all pixels and
-    /// channels. It is in linear light and from 0 to 1.
+    /// channels. It is in linear light and from 0 to 1, or NaN if a value of a pixel is NaN.
     ///
     /// ```
     /// # let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }
@@ -102,6 +164,20 @@ impl Picture {
     }
 }
 
+/// Writes the size, without the pixels.
+impl fmt::Debug for Picture {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Picture {{ {} × {}, .. }}", self.width(), self.height())
+    }
+}
+
+/// Makes a picture of the film's pixels. What scene it shows is unknown.
+impl From<Film> for Picture {
+    fn from(film: Film) -> Self {
+        Self::of(film::Picture::new(film, Rounding::Float), None)
+    }
+}
+
 /// A picture that was computed without samples, with a bound on the error of each pixel.
 ///
 /// ```
@@ -112,7 +188,7 @@ impl Picture {
 /// assert!(exact.bounds.iter().all(|&bound| bound < 1e-9));
 /// # Ok::<(), pinhole::Error>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Exact {
     /// Mean colour of each pixel, without sampling noise.
@@ -120,6 +196,15 @@ pub struct Exact {
     /// Error bound of each pixel, row by row: how far the mean of a channel may be from its true
     /// value, in linear light.
     pub bounds: Vec<f32>,
+}
+
+/// Writes the picture's size and the greatest error bound.
+impl fmt::Debug for Exact {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut fields = f.debug_struct("Exact");
+        fields.field("picture", &self.picture);
+        fields.field("bound", &self.bound()).finish_non_exhaustive()
+    }
 }
 
 impl Exact {

@@ -5,7 +5,7 @@ use std::{path::Path, sync::Arc};
 use super::{Error, Picture, Scene};
 use crate::{
     cancel, files,
-    film::{self, DECODED_LIMIT, Jpeg, SizesDiffer},
+    film::{self, DECODED_LIMIT, Jpeg, SizesDiffer, Unreadable},
     grading::{Reference, Verdict},
     render::Control,
     source::{Source, Sources},
@@ -29,7 +29,10 @@ impl Picture {
             path: path.to_owned(),
             error,
         })?;
-        Self::from_bytes(&bytes)
+        Self::read(&bytes).map_err(|error| Error::NoPicture {
+            path: path.to_owned(),
+            error,
+        })
     }
 
     /// Reads a picture from the bytes of a file, as [`open`](Self::open) does.
@@ -38,6 +41,10 @@ impl Picture {
     ///
     /// The bytes are no picture, or are decoded to more than [`DECODED_LIMIT`] bytes.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
+        Ok(Self::read(bytes)?)
+    }
+
+    fn read(bytes: &[u8]) -> Result<Self, Unreadable> {
         let sources = film::read_recipe(bytes).ok().map(|recipe| {
             let text = Source::from_text("scene", recipe.scene);
             Arc::new(Sources::new(text).with_sets(recipe.overrides))

@@ -16,6 +16,11 @@ impl Picture {
     /// format: `.png` for 8-bit sRGB, with the scene's text in the file, or `.exr` for linear
     /// light in floats. The program `pinhole` writes the same bytes.
     ///
+    /// A PNG does not contain the scene if its text and settings are together longer than
+    /// [`film::TEXT_LIMIT`], or if there are more than [`film::OVERRIDES_LIMIT`] settings. Then
+    /// [`Scene::from_data`](super::Scene::from_data) of the scene's data makes a scene without
+    /// settings.
+    ///
     /// ```
     /// # let folder = tempfile::tempdir().unwrap();
     /// # let path = folder.path().join("a.png");

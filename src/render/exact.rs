@@ -3,7 +3,7 @@
 //! In: the prepared scene and the part of its picture. Out: the colours of the pixels, which
 //! [`Integrator`] computes, and their error bounds, rounded upwards.
 
-use std::sync::Mutex;
+use std::{fmt, sync::Mutex};
 
 use super::{Control, RenderError, check_part, finished, tiles};
 use crate::{
@@ -22,7 +22,7 @@ use crate::{
 const TILE: u32 = 2 * GRID;
 
 /// An exactly computed picture, with its error bounds.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Exact<P = [f64; 3]> {
     /// Colours of the pixels, in linear light or converted to another type of pixel.
@@ -33,6 +33,18 @@ pub struct Exact<P = [f64; 3]> {
     /// Number of pixels whose stored value is certain, i.e. would be the same for every colour
     /// within the error bound.
     pub certain: u64,
+}
+
+/// Writes the film's size, the greatest error bound and the number of certain pixels.
+impl<P> fmt::Debug for Exact<P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut fields = f.debug_struct("Exact");
+        fields.field("film", &self.film);
+        fields.field("bound", &self.bound());
+        fields
+            .field("certain", &self.certain)
+            .finish_non_exhaustive()
+    }
 }
 
 impl<P> Exact<P> {

@@ -35,9 +35,13 @@ impl Tiling {
     }
 }
 
-/// Returns the divisions of a pixel with n ≥ 1 samples in which a method guarantees one sample per
+/// Returns the divisions of a pixel with `n` samples in which a method guarantees one sample per
 /// cell. If the division into n columns or the one into n rows is among them, it comes last.
+/// Returns no divisions if `n` is 0.
 pub fn tilings(method: Method, n: u64) -> Vec<Tiling> {
+    if n == 0 {
+        return vec![];
+    }
     let (columns, rows) = ([n, 1], [1, n]);
     let is_power_of = |base: u64| {
         std::iter::successors(Some(1), |p| Some(p * base))

@@ -138,8 +138,9 @@ pub enum Count {
     Total(u64),
 }
 
-/// One object of the scene.
-#[derive(Clone, Debug, PartialEq)]
+/// One object of the scene. Two objects are equal if their names, indices and shapes are. Their
+/// spans may differ, so that scenes of different texts can be equal.
+#[derive(Clone, Debug)]
 pub struct Object {
     /// The unique name, if the object has one: `Ball`, or `Ball[3, 1]` if the block is repeated.
     pub name: Option<String>,
@@ -150,6 +151,18 @@ pub struct Object {
     pub shape: Shape,
     /// Span of the whole block in the text.
     pub span: Span,
+}
+
+impl PartialEq for Object {
+    fn eq(&self, other: &Self) -> bool {
+        let Self {
+            name,
+            indices,
+            shape,
+            span: _,
+        } = self;
+        *name == other.name && *indices == other.indices && *shape == other.shape
+    }
 }
 
 impl Object {
@@ -163,13 +176,19 @@ impl Object {
         }
     }
 
-    /// Returns the object with a name, which no other object of the scene may have.
+    /// Returns the object with a name, which no other object of the scene may have. The object is
+    /// no longer a repetition: it has no indices.
     #[must_use]
     pub fn named(self, name: impl Into<String>) -> Self {
         Self {
             name: Some(name.into()),
+            indices: Box::default(),
             ..self
         }
+    }
+
+    fn is_named(&self, name: &str) -> bool {
+        self.name.as_deref() == Some(name)
     }
 
     /// Returns whether two objects come from the same block, i.e. are repetitions of one object.
@@ -179,6 +198,33 @@ impl Object {
 }
 
 impl Scene {
+    /// Returns the object with a name, such as `Ball` or `Ball[3, 1]`.
+    ///
+    /// ```
+    /// let scene = pinhole::Scene::parse(
+    ///     "camera { eye (0, 2, 8)  lookat (0, 1, 0) }  sphere Ball { center (0, 1, 0) }",
+    /// )?;
+    /// let mut data = scene.data().clone();
+    /// assert_eq!(data.object("Ball").unwrap().shape.kind(), "sphere");
+    /// assert_eq!(data.object("Bell"), None);
+    /// data.object_mut("Ball").unwrap().name = Some("Moon".to_owned());
+    /// assert!(pinhole::Scene::from_data(&data)?.to_string().contains("sphere Moon"));
+    /// # Ok::<(), pinhole::Mistakes>(())
+    /// ```
+    pub fn object(&self, name: &str) -> Option<&Object> {
+        self.objects.iter().find(|object| object.is_named(name))
+    }
+
+    /// Returns a mutable reference to the object with a name. The objects are copied first if
+    /// another scene shares them.
+    pub fn object_mut(&mut self, name: &str) -> Option<&mut Object> {
+        let index = self
+            .objects
+            .iter()
+            .position(|object| object.is_named(name))?;
+        self.objects_mut().get_mut(index)
+    }
+
     /// Returns a mutable reference to the objects. They are copied first if another scene shares
     /// them.
     pub fn objects_mut(&mut self) -> &mut Vec<Object> {

@@ -114,10 +114,7 @@ fn one(text: &str, id: SourceId) -> Result<(Option<Name<'_>>, Name<'_>, usize), 
 fn name(text: &str, start: usize, id: SourceId) -> Option<Name<'_>> {
     let trimmed = text.trim();
     let start = start + text.len() - text.trim_start().len();
-    let letters = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let starts_well = !trimmed.starts_with(|c: char| c.is_ascii_digit());
-    let is_name = !trimmed.is_empty() && starts_well && trimmed.chars().all(letters);
-    (is_name && trimmed != "let").then(|| Name {
+    (syntax::is_name(trimmed) && trimmed != "let").then(|| Name {
         text: trimmed,
         span: Span::new(id, start, start + trimmed.len()),
     })

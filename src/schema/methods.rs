@@ -26,6 +26,12 @@ macro_rules! methods {
             }
         }
 
+        impl Method {
+            /// All techniques, in the order in which the language's reference lists them: those
+            /// that take samples ([`Self::SAMPLED`]), and then `exact`.
+            pub const ALL: &[Self] = &[$(Self::$method),*];
+        }
+
         /// Every sampling technique, with a line of help.
         pub const METHODS: &[(Method, &str)] = &[$((Method::$method, $help)),*];
 

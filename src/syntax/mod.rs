@@ -41,6 +41,15 @@ use crate::{diagnostic::Diagnostic, source::Span};
 /// larger maximum would need threads with a larger stack.
 pub const NESTING_LIMIT: usize = 256;
 
+/// Returns whether a text has the form of a name: it is made of the letters a to z, digits and `_`,
+/// and does not start with a digit.
+pub fn is_name(text: &str) -> bool {
+    let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    !text.is_empty()
+        && !text.starts_with(|c: char| c.is_ascii_digit())
+        && text.chars().all(is_letter)
+}
+
 /// Result of parsing.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]

@@ -35,6 +35,11 @@ pub fn assert_same_in_parts(text: &str, bytes: usize, sets: &[&str]) -> bool {
     let as_whole = scene::read_in_parts(&sources, usize::MAX);
     assert_eq!(as_parts.diagnostics, as_whole.diagnostics, "{text:?}");
     assert_eq!(as_parts.scene, as_whole.scene, "{text:?}");
+    let [spans, spans_of_whole] = [&as_parts, &as_whole].map(|reading| {
+        let objects = reading.scene.iter().flat_map(|it| it.objects.iter());
+        objects.map(|object| object.span).collect::<Vec<_>>()
+    });
+    assert_eq!(spans, spans_of_whole, "{text:?}");
     in_parts
 }
 

@@ -16,7 +16,7 @@ pub(crate) use self::{
     precision::{Geometry, Precision},
 };
 
-use std::{cmp::Ordering, convert::Infallible, sync::atomic::AtomicBool};
+use std::{cmp::Ordering, convert::Infallible, fmt, sync::atomic::AtomicBool};
 
 use glam::DVec2;
 
@@ -39,7 +39,6 @@ use crate::{
 
 /// The scene prepared for one picture. It is built once and can then be queried at any sample point
 /// from any thread.
-#[derive(Debug)]
 pub struct World {
     basis: Basis,
     pub(crate) geometry: Geometry,
@@ -66,6 +65,18 @@ struct Nearest<T: Real> {
     /// Whether the crossing is the ray's second one with the object.
     second: bool,
     crossing: Crossing<T>,
+}
+
+/// Writes the picture's area, the number of objects and the palette.
+impl fmt::Debug for World {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut fields = f.debug_struct("World");
+        fields.field("picture", &self.picture());
+        fields.field("objects", &self.object_count());
+        fields
+            .field("palette", &self.palette())
+            .finish_non_exhaustive()
+    }
 }
 
 impl World {
@@ -164,7 +175,8 @@ impl World {
 
     /// Returns the palette index of the colour that is seen at a sample point. The point lies in
     /// the pixel in column `x` and row `y`, at `offset` from the pixel's centre in pixels, x to the
-    /// right and y down, each in [−1/2, 1/2).
+    /// right and y down, each in [−1/2, 1/2). For a point outside of the picture, the answer may be
+    /// wrong.
     #[inline]
     pub fn slot_at(&self, x: u32, y: u32, offset: DVec2) -> usize {
         self.slot_near(x, y, offset, None)
@@ -189,8 +201,11 @@ impl World {
     }
 
     /// Returns the index in the file of the object that is seen at the centre of a pixel. Returns
-    /// `None` for the background.
+    /// `None` for the background, and for a pixel outside of the picture.
     pub fn object_at(&self, x: u32, y: u32) -> Option<usize> {
+        if !Area::pixel(x, y).lies_in(self.picture()) {
+            return None;
+        }
         let point = self.geometry.fast.camera.sample_point(x, y, DVec2::ZERO);
         let seen = match self.seen_fast(&point, None) {
             Ok(seen) => seen.map(|seen| seen.object),
@@ -259,6 +274,11 @@ impl World {
 
     /// Returns the palette indices of an object's two colours. They are equal unless the object is
     /// a checkerboard.
+    ///
+    /// # Panics
+    ///
+    /// Panics if there is no such object: `object` must be less than
+    /// [`object_count`](Self::object_count).
     pub fn slots(&self, object: usize) -> [usize; 2] {
         self.colors.of_objects[object].map(|slot| slot as usize)
     }

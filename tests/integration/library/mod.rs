@@ -1,5 +1,6 @@
 //! Tests of the library's public functions and types, as another program uses them.
 
+mod pictures;
 mod wrong_data;
 
 #[allow(dead_code, reason = "its main function is another program's")]
@@ -14,7 +15,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use pinhole::{Color, Error, Method, Picture, Scene, SceneData};
+use pinhole::{Color, Error, Method, Picture, Scene, SceneData, source::Sources};
 
 use crate::{program::Folder, scenes::example_text};
 
@@ -104,6 +105,24 @@ fn extreme_numbers_are_written_to_the_last_bit() {
 }
 
 #[test]
+fn equality_of_data_ignores_where_they_stand_in_a_text() {
+    let text = example_text("figure_9_9");
+    let scene = Scene::parse(&text).unwrap();
+    let below = Scene::parse(&format!("\n\n{text}")).unwrap();
+    assert_eq!(scene.data(), below.data());
+    assert_eq!(Scene::from_data(scene.data()).unwrap().data(), scene.data());
+    let mut other = scene.data().clone();
+    other.objects_mut()[0].name = Some("Other".to_owned());
+    assert_ne!(&other, scene.data());
+    let repeated = Scene::parse(
+        "camera { eye (0, 2, 8)  lookat (0, 1, 0) }  sphere A for i < 2 { center (i, 1, 0) }",
+    );
+    let repeated = repeated.unwrap();
+    let objects = &repeated.data().objects;
+    assert!(objects[0].is_beside(&objects[1]) && objects[0] != objects[1]);
+}
+
+#[test]
 fn a_repeated_object_gets_a_name_that_is_free() {
     let text = "camera { eye (0, 2, 8)  lookat (0, 1, 0) }
         sphere Ball for i < 2, j < 2 { center (i, j, 0) }  sphere Ball_1_0 { center (0, 5, 0) }";
@@ -115,69 +134,12 @@ fn a_repeated_object_gets_a_name_that_is_free() {
         .filter_map(|it| it.name.as_deref());
     let expected = ["Ball_0_0", "Ball_0_1", "Ball_1_0_", "Ball_1_1", "Ball_1_0"];
     assert!(names.eq(expected), "{scene}");
-}
 
-#[test]
-fn saved_pictures_have_the_bytes_that_the_program_writes() {
-    let text = example_text("figure_9_9");
-    let folder = Folder::with([("a.scn", &text[..])]);
-    let sets = ["image.width=64", "image.height=36"];
-    for method in ["multi_jittered", "scatter", "exact"] {
-        let sets = sets.map(str::to_owned).into_iter();
-        let sets = sets
-            .chain([format!("sampler.method={method}")])
-            .collect::<Vec<_>>();
-        let mut scene: Scene = text.parse().unwrap();
-        for set in &sets {
-            scene = scene.with_set(set).unwrap();
-        }
-        let picture = scene.render().unwrap();
-        for ending in ["png", "exr"] {
-            let sets = sets.iter().map(|set| format!("--set {set}"));
-            let sets = sets.collect::<Vec<_>>().join(" ");
-            let said = folder.run(&format!("render a.scn {sets} -o program.{ending}"));
-            assert_eq!(said.status, 0, "{}", said.errors);
-            let path = folder.path(&format!("library.{ending}"));
-            picture.save(&path).unwrap();
-            let program = fs::read(folder.path(&format!("program.{ending}"))).unwrap();
-            assert!(fs::read(&path).unwrap() == program, "{method} {ending}");
-            let read = Picture::open(&path).unwrap();
-            assert!(read.rmse(&picture).unwrap() < 0.01);
-            assert_eq!(read.to_rgb8(), picture.to_rgb8());
-            // A picture that was read from a file can be saved again, together with its scene.
-            read.save(&path).unwrap();
-            assert!(fs::read(&path).unwrap() == program, "{method} {ending}");
-        }
-    }
-}
-
-#[test]
-fn a_part_that_is_read_and_saved_again_is_still_a_part() {
-    let folder = Folder::with([("a.scn", &example_text("figure_9_9")[..])]);
-    for ending in ["png", "exr"] {
-        let size = "--set image.width=64 --set image.height=36";
-        folder.done(&format!("render a.scn {size} --shard 2/3 -o part.{ending}"));
-        let path = folder.path(&format!("part.{ending}"));
-        let written = fs::read(&path).unwrap();
-        Picture::open(&path).unwrap().save(&path).unwrap();
-        assert!(fs::read(&path).unwrap() == written, "{ending}");
-    }
-}
-
-#[test]
-fn a_changed_scene_is_in_its_picture() {
-    let mut data = Scene::parse(&example_text("figure_9_9"))
-        .unwrap()
-        .data()
-        .clone();
-    (data.image.width, data.image.height) = (32, 18);
-    data.camera.eye.y = 7.5;
+    let mut data = Scene::parse(text).unwrap().data().clone();
+    let other = data.objects[0].clone().named("Other");
+    data.objects_mut()[0] = other;
     let scene = Scene::from_data(&data).unwrap();
-    let folder = Folder::with([]);
-    scene.render().unwrap().save(folder.path("a.png")).unwrap();
-    folder.done("render a.png -o again.png");
-    let [first, again] = ["a.png", "again.png"].map(|name| fs::read(folder.path(name)).unwrap());
-    assert!(first == again);
+    assert_eq!(scene.data().objects[0].name.as_deref(), Some("Other"));
 }
 
 #[test]
@@ -188,67 +150,109 @@ fn mistakes_are_displayed_as_the_program_reports_them() {
     let mistakes = Scene::parse(&wrong).unwrap_err();
     assert_eq!(format!("{mistakes}\n"), said.errors);
     assert_eq!(format!("{mistakes:?}\n"), said.errors);
-    assert_eq!(mistakes.iter().count(), 1);
+    assert_eq!(mistakes.len(), 1);
+    let all: Vec<pinhole::Diagnostic> = mistakes.clone().into_iter().collect();
+    assert!(all.iter().eq(mistakes.iter()));
     let set = Scene::parse(&example_text("figure_9_9")).unwrap();
     let said = set.with_set("camera.rol=8deg").unwrap_err().to_string();
     assert!(said.contains("did you mean `roll`"), "{said}");
 }
 
 #[test]
-fn an_exact_scene_is_computed_by_either_way_to_render() {
-    let set = "sampler.method=exact";
-    let scene = Scene::parse(&example_text("figure_9_9")).unwrap();
-    let sizes = ["image.width=32", "image.height=18"];
-    let scene = sizes
+fn a_later_setting_replaces_an_earlier_one_of_the_same_target() {
+    let scene = Scene::parse(
+        "let h = 1
+        camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+        box B { min (0, 0, 0)  max (1, h, 1) }",
+    );
+    let scene = scene.unwrap();
+    let texts = |scene: &Scene| {
+        let sets = scene.sources().sets.iter();
+        sets.map(|set| format!("{}: {}", set.name(), set.text()))
+            .collect::<Vec<_>>()
+    };
+    let mut frame = scene.clone();
+    for step in 1..=3 {
+        let h = format!("h={step}");
+        let eye = format!("camera.eye=(0, {step}, 9)");
+        frame = frame.with_set(&h).unwrap().with_set(&eye).unwrap();
+    }
+    assert_eq!(
+        texts(&frame),
+        ["--set #1: h=3", "--set #2: camera.eye=(0, 3, 9)"]
+    );
+    // In every order, the scene is that of all settings together.
+    let steps = [
+        "B.center=(5, 5, 5)",
+        "B.size=(2, 2, 2)",
+        "camera.direction=(0, 0, -1)",
+        " B . center = (6, 5, 5)",
+        "h=2",
+        "camera.lookat=(0, 0, 0)",
+        "B.size=(1, 2, 3)",
+        "camera.direction=(0, 1, -1)",
+    ];
+    let sizes = ["B.center=(0, 0, 0)", "B.size=(1, 1, 1)"];
+    let start = scene.with_sets(sizes).unwrap();
+    let one_by_one = steps
         .iter()
-        .fold(scene, |scene, set| scene.with_set(set).unwrap());
-    let exact = scene.render_exact().unwrap();
-    let rendered = scene.with_set(set).unwrap().render().unwrap();
-    assert_eq!(rendered.pixels(), exact.picture.pixels());
-    assert_eq!(exact.bounds.len(), 32 * 18);
-    assert!(exact.bound() < 1e-9, "{}", exact.bound());
+        .fold(start.clone(), |scene, set| scene.with_set(set).unwrap());
+    let all = Sources::new(scene.sources().file.clone());
+    let all = pinhole::scene::read(&all.with_sets(sizes).with_sets(steps)).scene;
+    assert_eq!(one_by_one.data(), &all.unwrap());
+    assert_eq!(one_by_one.data(), start.with_sets(steps).unwrap().data());
+    assert_eq!(texts(&one_by_one).len(), 5);
+    let wrong = scene
+        .with_sets(["camera.near=-1", "camera.rol=2deg"])
+        .unwrap_err();
+    assert_eq!(wrong.iter().count(), 2, "{wrong}");
 }
 
 #[test]
-fn pictures_are_judged() {
-    let scene = Scene::parse(&example_text("figure_9_9")).unwrap();
-    let sizes = ["image.width=96", "image.height=54"];
-    let scene = sizes
-        .iter()
-        .fold(scene, |scene, set| scene.with_set(set).unwrap());
-    let picture = scene.render().unwrap();
-    let verdict = scene.grade(&picture).unwrap();
-    assert!(
-        verdict
-            .to_string()
-            .starts_with("right but for sampling noise")
-    );
-    let exact = scene.render_exact().unwrap().picture;
-    assert_eq!(
-        scene.grade(&exact).unwrap().to_string(),
-        "right: equal to the exact picture"
-    );
-    let small = scene.with_set("image.width=95").unwrap().render().unwrap();
-    for error in [scene.grade(&small).err(), small.rmse(&picture).err()] {
-        let told = error.unwrap().to_string();
-        assert_eq!(told, "the sizes differ: 95 × 54 pixels and 96 × 54");
+fn a_scene_is_read_from_a_file_or_a_picture() {
+    let wrong = example_text("figure_9_9").replace("radius 1", "radus 1");
+    let folder = Folder::with([
+        ("a.scn", &example_text("figure_9_9")[..]),
+        ("wrong.scn", &wrong),
+    ]);
+    let scene = Scene::open(folder.path("a.scn")).unwrap();
+    let sets = ["image.width=8", "image.height=4", "camera.roll=8deg"];
+    let rolled = scene.with_sets(sets).unwrap();
+    let picture = rolled.render().unwrap();
+    picture.save(folder.path("a.png")).unwrap();
+    picture.save(folder.path("a.exr")).unwrap();
+    let opened = Picture::open(folder.path("a.png")).unwrap();
+    for again in [
+        Scene::open(folder.path("a.png")),
+        opened.scene(),
+        picture.scene(),
+    ] {
+        assert_eq!(again.unwrap().data(), rolled.data());
     }
-    // The file of a crop contains the crop's position in the whole picture.
-    let folder = Folder::with([("a.scn", &example_text("figure_9_9")[..])]);
-    folder.done(
-        "render a.scn --set image.width=96 --set image.height=54 --crop 40,20,30,20 -o part.png",
-    );
-    let part = Picture::open(folder.path("part.png")).unwrap();
-    let verdict = scene.grade(&part).unwrap();
+    assert_eq!(picture.pixel(7, 3), *picture.pixels().last().unwrap());
+    let object = |name: &str| scene.data().object(name).map(|it| it.name.clone().unwrap());
+    assert_eq!(object("Ball").as_deref(), Some("Ball"));
+    assert_eq!(object("Bell"), None);
+
+    let error = Scene::open(folder.path("wrong.scn"))
+        .unwrap_err()
+        .to_string();
+    let path = folder.path("wrong.scn");
+    assert!(error.contains(path.to_str().unwrap()), "{error}");
+    let other = Picture::open(folder.path("a.exr")).unwrap();
+    let told = other.scene().unwrap_err().to_string();
+    assert_eq!(told, "the picture carries no scene");
+    let error = Scene::open(folder.path("none.scn")).unwrap_err();
+    let told = error.to_string();
     assert!(
-        verdict.to_string().starts_with("right but for"),
-        "{verdict}"
+        told.ends_with("none.scn: there is no such file or folder"),
+        "{told}"
     );
 }
 
 #[test]
 fn errors_name_the_file_and_the_reason() {
-    let folder = Folder::with([("text.png", "camera {}")]);
+    let folder = Folder::with([("text.png", "camera {}"), ("a.pdf", "%PDF-1.7")]);
     let scene = Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }").unwrap();
     let picture = scene.with_set("image.width=4").unwrap().render().unwrap();
     let path = |name: &str| folder.path(name);
@@ -268,7 +272,11 @@ fn errors_name_the_file_and_the_reason() {
         ),
         (
             Picture::open(path("text.png")).unwrap_err(),
-            "it is no picture in PNG",
+            "cannot read text.png: it is no picture in PNG",
+        ),
+        (
+            Picture::open(path("a.pdf")).unwrap_err(),
+            "cannot read a.pdf: it is no picture, but a PDF: use the picture in it, as a PNG",
         ),
     ] {
         let told = told(error);
@@ -298,7 +306,9 @@ fn colours_and_methods_are_read_as_the_language_writes_them() {
         let told = text.parse::<Color>().unwrap_err().to_string();
         assert!(told.contains(part), "{text}: {told}");
     }
-    for (method, _) in pinhole::schema::METHODS {
+    assert!(Method::ALL.starts_with(&Method::SAMPLED));
+    assert_eq!(Method::ALL.len(), pinhole::schema::METHODS.len());
+    for method in Method::ALL {
         assert_eq!(method.to_string().parse::<Method>(), Ok(*method));
     }
     let told = "jitter".parse::<Method>().unwrap_err().to_string();

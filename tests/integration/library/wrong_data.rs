@@ -7,7 +7,7 @@ use pinhole::{
     Scene, SceneData,
     area::Area,
     film::{self, Film, Rounding, SizesDiffer, write_exr},
-    glam::DVec3,
+    glam::{DVec2, DVec3},
     grading::{Kind, Reference},
     refine::coarse,
     render::{self, Control, RenderError, render_as_asked, render_exact},
@@ -32,7 +32,7 @@ fn data_that_break_a_condition_are_no_scene() {
         color: pinhole::Color::BLACK,
     };
     type Change = (&'static str, fn(&mut SceneData));
-    let changes: [Change; 15] = [
+    let changes: [Change; 18] = [
         ("`radius` must be more than 0", |it| {
             if let Shape::Sphere(sphere) = &mut it.objects_mut()[0].shape {
                 sphere.radius = -1.0;
@@ -41,8 +41,19 @@ fn data_that_break_a_condition_are_no_scene() {
         ("stands on the point that it looks at", |it| {
             it.camera.view = View::Lookat(it.camera.eye);
         }),
-        ("NaN", |it| it.camera.eye.x = f64::NAN),
-        ("inf", |it| it.camera.eye.x = f64::INFINITY),
+        ("`eye` is not finite", |it| it.camera.eye.x = f64::NAN),
+        ("`eye` is not finite", |it| {
+            it.camera.eye.z = f64::NEG_INFINITY
+        }),
+        ("`roll` is not finite", |it| {
+            it.camera.roll.radians = f64::NAN
+        }),
+        ("`far` is not finite", |it| {
+            it.camera.far = Some(f64::INFINITY)
+        }),
+        ("`background` is not finite", |it| {
+            it.image.background.srgb[2] = f64::NAN;
+        }),
         ("`far` must be more than `near`", |it| {
             it.camera.far = Some(0.0)
         }),
@@ -88,6 +99,46 @@ fn data_that_break_a_condition_are_no_scene() {
     }
     let data = changed(|it| it.objects_mut().push(Object::new(ball(1.0)).named("Other")));
     assert!(World::try_new(&data).is_ok());
+}
+
+#[test]
+fn a_name_that_the_language_does_not_have_is_one_mistake() {
+    let ball = Sphere {
+        center: DVec3::Y,
+        radius: 1.0,
+        color: pinhole::Color::BLACK,
+    };
+    for name in [
+        "",
+        " ",
+        "A ",
+        "A for i < 3",
+        "A { center (9, 9, 9)  radius 5  color red } sphere B",
+        "B[0]",
+        "7up",
+        "Bäll",
+        "let",
+        "for",
+    ] {
+        let data = changed(|it| it.objects_mut().push(Object::new(ball).named(name)));
+        let errors = [
+            Scene::from_data(&data).unwrap_err(),
+            World::try_new(&data).unwrap_err(),
+        ];
+        for error in errors {
+            let mistakes: Vec<_> = error.iter().collect();
+            assert_eq!(mistakes.len(), 1, "{name}: {error}");
+            assert_eq!(mistakes[0].code, "pinhole::bad_name", "{name}: {error}");
+            assert_eq!(error.sources().text(mistakes[0].labels[0].span), name);
+        }
+    }
+    let mut repeated = read(
+        "camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+        sphere A for i < 2, j < 2 { center (i, j, 0) }",
+    );
+    assert!(repeated.check().is_ok());
+    repeated.objects_mut()[1].name = Some("A[0, 1] { } sphere B".to_owned());
+    assert_eq!(repeated.check().unwrap_err().iter().count(), 1);
 }
 
 #[test]
@@ -163,6 +214,47 @@ fn a_picture_with_values_that_are_no_numbers_is_wrong() {
             assert_eq!(verdict.mistakes[0].id, "not_finite");
         }
     }
+}
+
+#[test]
+fn what_lies_outside_of_a_picture_is_nothing() {
+    let scene = example("figure_9_9", 96, 54);
+    let world = World::new(&scene);
+    let pixels = [(48, 53), (96, 53), (48, 54), (1000, 1000), (u32::MAX, 0)];
+    let is_seen = pixels.map(|(x, y)| world.object_at(x, y).is_some());
+    assert_eq!(is_seen, [true, false, false, false, false]);
+    for (method, _) in pinhole::schema::METHODS {
+        assert!(pinhole::sampling::tilings(*method, 0).is_empty());
+    }
+    let empty: Film = Film::new(0, 0).unwrap();
+    assert_eq!(film::rmse(&empty, &empty), Ok(0.0));
+    let numbers = Film::from_fn(2, 1, |_, _| [f64::NAN; 3]).unwrap();
+    assert!(film::rmse(&numbers, &numbers).unwrap().is_nan());
+}
+
+#[test]
+#[should_panic(expected = "there is not one error bound for each pixel")]
+fn pixels_without_error_bounds_are_not_certified() {
+    film::certified(&Film::new(2, 1).unwrap(), &[]);
+}
+
+#[test]
+#[should_panic(expected = "is not finite")]
+fn a_point_that_is_not_finite_is_not_probed() {
+    pinhole::probe::probe(&changed(|_| ()), DVec2::NAN);
+}
+
+#[test]
+#[should_panic(expected = "the picture to judge has another size")]
+fn a_comparison_of_another_size_is_refused() {
+    let scene = changed(|_| ());
+    let control = Control::default();
+    let new = |part| Reference::new(&scene, part, Rounding::Float, &control).unwrap();
+    let (reference, small) = (new(Area::whole(32, 18)), new(Area::whole(16, 18)));
+    let black = Film::new(16, 18).unwrap();
+    let comparison = small.compare(&black, 0.5).unwrap();
+    let picture = film::Picture::new(black, Rounding::Float);
+    let _ = reference.judge(&picture, None, &comparison, control.cancel);
 }
 
 #[test]
