@@ -55,11 +55,23 @@ impl Arc {
     /// This is the ratio of a circle's segment of half-angle θ to its triangle; an affine map takes
     /// every ellipse to a circle. If w > 1, θ is imaginary.
     pub(crate) fn area(&self) -> f64 {
-        let triangle = 0.5
-            * (self.control - self.start)
-                .perp_dot(self.end - self.start)
-                .abs();
-        triangle * triangle_share(self.weight)
+        self.bounded_area().value
+    }
+
+    /// Returns the area between the arc and its chord, with a bound on its rounding errors.
+    fn bounded_area(&self) -> BoundedSum {
+        let (side, chord) = (self.control - self.start, self.end - self.start);
+        let products = [side.x * chord.y, side.y * chord.x];
+        let share = triangle_share(self.weight);
+        let area = 0.5 * (products[0] - products[1]).abs() * share;
+        BoundedSum {
+            value: area,
+            // The segment's share of the triangle has up to ten roundings. At |1 − w²| =
+            // `NEAR_PARABOLA`, the difference θ − sin θ·cos θ is only a quarter of its terms, which
+            // makes their roundings four times as large. In a flat triangle, the two products are
+            // nearly equal: their own roundings, three each, may exceed those of the difference.
+            bound: UNIT * (48.0 * area + 2.0 * (products[0].abs() + products[1].abs()) * share),
+        }
     }
 
     /// Returns the point of the arc at the curve's parameter `t`: 0 is the start, 1 the end.
@@ -136,7 +148,8 @@ impl Homography {
     /// Integrates the board's sign (1 on squares of one colour, −1 on the others) over the region
     /// between an arc and its chord, in square pixels.
     pub(super) fn over_segment(&self, arc: &Arc, budget: &PixelBudget) -> BoundedSum {
-        let area = arc.area();
+        let segment = arc.bounded_area();
+        let area = segment.value;
         // The arc is cut where it crosses a line of the board, so that the segment of each piece
         // lies in one square. The chords of the pieces enclose the rest of the region, a convex
         // polygon.
@@ -145,26 +158,27 @@ impl Homography {
         // segment of area A is cut into n pieces, each piece has a segment of A/n³, and all pieces
         // together have A/n². This total equals the tolerance t if the limit is t^(3/2)/√A.
         if let Some(sign) = self.square_of(arc) {
-            return over_one_square(area, sign);
+            return over_one_square(segment, sign);
         }
         let mut chords = Chords {
             points: vec![arc.start],
             sum: BoundedSum::default(),
             neglected: budget.tolerance * (budget.tolerance / area).sqrt(),
         };
-        self.cut(arc, area, &mut chords);
+        self.cut(arc, segment, &mut chords);
         chords.sum.add(self.over(&chords.points, budget));
         chords.sum.or_unknown(area)
     }
 
-    /// Cuts an arc whose segment has the area `area`. Adds the integrals over the pieces' segments
-    /// to `chords.sum`, and the pieces' ends to `chords.points`.
-    fn cut(&self, arc: &Arc, area: f64, chords: &mut Chords) {
+    /// Cuts an arc whose segment has the area `segment`. Adds the integrals over the pieces'
+    /// segments to `chords.sum`, and the pieces' ends to `chords.points`.
+    fn cut(&self, arc: &Arc, segment: BoundedSum, chords: &mut Chords) {
         if let Some(sign) = self.square_of(arc) {
-            chords.sum.add(over_one_square(area, sign));
+            chords.sum.add(over_one_square(segment, sign));
             chords.points.push(arc.end);
             return;
         }
+        let area = segment.value;
         if area <= chords.neglected {
             chords.sum.bound += area;
             chords.points.push(arc.end);
@@ -177,10 +191,10 @@ impl Homography {
             return self.cut_at_lines(arc, [a, b], chords);
         }
         let halves = [arc.between(0.0, 0.5), arc.between(0.5, 1.0)];
-        let areas = halves.map(|half| half.area());
+        let areas = [0, 1].map(|i| halves[i].bounded_area());
         // The comparison fails if numbers are too large or too small to represent the arc, which is
         // then not halved.
-        let is_halved = areas[0] + areas[1] < MAX_HALVES_SHARE * area;
+        let is_halved = areas[0].value + areas[1].value < MAX_HALVES_SHARE * area;
         if !is_halved {
             chords.sum.bound += if area.is_nan() { 1.0 } else { area };
             chords.points.push(arc.end);
@@ -215,7 +229,7 @@ impl Homography {
                 let [a, b] = self
                     .across
                     .map(|across| square_wave(form(&across, middle) * depth));
-                let mut segment = over_one_square(piece.area(), a * b);
+                let mut segment = over_one_square(piece.bounded_area(), a * b);
                 // Rounding errors of the forms displace the lines of the board, which changes the
                 // integral.
                 segment.bound += self.displacement_error(&[piece.start, piece.control, piece.end]);
@@ -260,14 +274,10 @@ impl Homography {
 }
 
 /// Integrates the board's sign over a segment of area `area` within one square of sign `sign`.
-fn over_one_square(area: f64, sign: f64) -> BoundedSum {
+fn over_one_square(area: BoundedSum, sign: f64) -> BoundedSum {
     BoundedSum {
-        value: sign * area,
-        // The area of the triangle of chord and control point has five roundings, and the segment's
-        // share of the triangle (`triangle_share`) up to ten. At |1 − w²| = `NEAR_PARABOLA`, the
-        // difference θ − sin θ·cos θ is only a quarter of its terms, which makes their roundings
-        // four times as large.
-        bound: 48.0 * UNIT * area,
+        value: sign * area.value,
+        ..area
     }
 }
 
