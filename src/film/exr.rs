@@ -207,6 +207,7 @@ fn other_size<P: AsFloats>(film: &Film<P>, part: Area) -> io::Error {
 }
 
 /// Returns the digest that a file's header stores; `None` if another program wrote the file.
+#[cfg(feature = "read")]
 pub(super) fn stored_digest(own: &LayerAttributes) -> Option<String> {
     match own.other.get(&Text::from(DIGEST))? {
         AttributeValue::Text(digest) => Some(digest.to_string()),
