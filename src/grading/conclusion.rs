@@ -29,8 +29,9 @@ const IMPLAUSIBLE_FIELDS: usize = 3;
 /// distance of the mean of four random samples, shared by all pixels, from a pixel's middle.
 const LEAST_DISPLACEMENT: f64 = 0.4;
 
-/// Fraction of the picture's squared error above which guesses are left out if they leave it
-/// unexplained. They are then about pictures of another scene, and help nobody.
+/// Maximum fraction of the picture's squared error that guesses may leave unexplained. Guesses that
+/// leave more are not reported: the picture then mostly shows something else, and they would
+/// mislead.
 const USELESS_REST: f64 = 0.5;
 
 /// Place in a row's message for a factor of light, which is estimated from the picture.
@@ -229,7 +230,7 @@ fn is_slight(scene: &Scene, candidate: &Candidate, named: &[NamedMistake]) -> bo
         let mut named = named.iter();
         named.any(|one| (one.id, one.object) == (mistake.id(), mistake.object()))
     };
-    // Near and far planes move nothing, and what they cut off is no small thing.
+    // A wrong near or far plane displaces nothing, but it cuts objects off, so it is never slight.
     let is_place = |mistake: &Mistake| match mistake {
         Mistake::Numbers(parameter, _) => {
             !parameter.is_color() && !matches!(parameter.fields[..], ["near" | "far"])

@@ -16,9 +16,10 @@ use crate::{
 
 /// Returns the content of `results.json` for a student. Each criterion, such as the camera or an
 /// object, is a test in Gradescope. Without `--points`, each test counts one point. With it, the
-/// points are those of the whole, and a test only passes or fails: a mistake may cost more than an
-/// equal share of the points, so the sum of such shares would not be the score. If the picture is
-/// wrong for unknown reasons, no scores are written, so that the teacher decides.
+/// submission has points as a whole, and its tests only pass or fail: a mistake may cost more
+/// points than any share that its test could have, so the tests' points would not add up to the
+/// score. If the picture is wrong for unknown reasons, no scores are written, so that the teacher
+/// decides.
 pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>) -> Value {
     let Ok(judged) = one.best() else {
         return whole(one, None, Vec::new());
