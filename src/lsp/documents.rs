@@ -12,8 +12,7 @@ pub type LineColumn = (u32, u32);
 pub struct Document {
     /// Version number that the client has given to the text.
     pub version: i32,
-    /// Sources of the scene. The text is the only one, because an editor passes no `--set`
-    /// arguments.
+    /// Source files of the scene: only this text, because an editor passes no `--set` arguments.
     pub sources: Sources,
     encoding: Encoding,
 }
@@ -150,8 +149,9 @@ mod tests {
         let changes = [
             change([(0, 0), (0, 3)], "🎱"),
             change([(0, 2), (1, 0)], " "),
-            // The first range ends before its start and exceeds the line. The second range is in
-            // the line after the last one, where an insertion appends to the text.
+            // The first range ends before its start and reaches beyond the end of its line. The
+            // second range is in the line after the last one, where an insertion appends to the
+            // text.
             change([(0, 99), (0, 3)], "!"),
             change([(2, 0), (2, 0)], "end"),
         ];

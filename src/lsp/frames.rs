@@ -1,5 +1,5 @@
-//! Renders frames, i.e. pictures of an open text that are shown on a page. A frame is rendered in
-//! slices, so that other messages are answered between two slices.
+//! Renders frames, i.e. pictures of an open text that are shown on a web page. A frame is rendered
+//! in slices, so that other messages are answered between two slices.
 
 use std::{collections::HashMap, mem};
 
@@ -20,8 +20,8 @@ use crate::{
     scene::{Count, Method, Sampler},
 };
 
-/// Maximum number of pixels of a frame, i.e. of a picture that a page shows. A request for a larger
-/// frame is refused. Usual screens show fewer than these 16 million pixels.
+/// Maximum number of pixels of a frame, i.e. of a picture that a web page shows. A request for a
+/// larger frame is refused. The limit is 16 million pixels, more than most screens have.
 const MOST_PIXELS: u64 = 1 << 24;
 
 /// Queue of the requested frames that are not finished yet, the oldest first.

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 /// bytes. A message with 40 000 changes of a text is still below the limit.
 const MOST_VALUES: usize = 1 << 19;
 
-/// Error: a text is not a valid message.
+/// Error for a text that is not a valid message.
 #[derive(Debug)]
 pub enum Malformed {
     /// Response to send to the client: an error that says why the text is malformed.
@@ -125,8 +125,8 @@ fn request_id(text: &[u8]) -> Value {
     identifier(asked.map(|asked: Asked| asked.id))
 }
 
-/// Returns `id` if it is a string or a number, and otherwise null, which is the identifier of a
-/// response to an unknown request.
+/// Returns `id` if it is a string or a number, and otherwise null. JSON-RPC requires null in the
+/// response to a request whose identifier is unknown.
 fn identifier(id: Option<Value>) -> Value {
     id.filter(|id| id.is_string() || id.is_number())
         .unwrap_or_default()

@@ -1,11 +1,14 @@
-//! Language server: provides the answers of the editor module by the Language Server Protocol.
+//! Language server: makes the answers of the editor module available through the Language Server
+//! Protocol.
 //!
 //! [`Server`] receives messages, holds the open texts (`documents`), and returns messages. It uses
 //! neither threads nor streams, so that any host can run it; [`stdio`] runs it on standard input
 //! and output. `text_requests` calls [`crate::editor`] for the answers, and `convert` converts them
-//! to the types of the protocol (`protocol`). `picture_requests` and `frames` answer requests about
-//! the picture of a text. These requests are Pinhole's own; docs/protocol.md describes them.
-//! `scene_version` caches the data for these answers.
+//! to the types of the protocol (`protocol`).
+//!
+//! `picture_requests` and `frames` answer requests about the picture of a text. These requests are
+//! Pinhole's additions to the protocol; docs/protocol.md describes them. `scene_version` caches the
+//! scene and the tracer's data, from which they are answered.
 
 mod convert;
 mod documents;

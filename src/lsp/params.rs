@@ -33,7 +33,7 @@ impl Refusal {
 /// The answer to a request as JSON, or the error that answers it instead.
 pub type Answer = Result<Value, Refusal>;
 
-/// Reads the value at the JSON pointer `path` in the parameters. A missing value counts as null.
+/// Reads the value at the JSON pointer `path` in the parameters. A missing value is read as null.
 pub fn at<T: serde::de::DeserializeOwned>(params: &Value, path: &str) -> Result<T, Refusal> {
     let found = params.pointer(path).cloned().unwrap_or_default();
     serde_json::from_value(found).map_err(Refusal::invalid)

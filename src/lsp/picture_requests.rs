@@ -51,8 +51,9 @@ pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     }
 }
 
-/// Answers with the smallest and largest value, the step and the other limits of a slider for the
-/// number at a position of the text. The text may have errors.
+/// Answers with the limits of a slider for a number in the text: its smallest and largest value,
+/// its step and so on. The parameters contain a position within the number. The text may have
+/// errors.
 fn limits(params: &Value, converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     let offset = converter.offset(at(params, "/position")?);
     Ok(editor::limits(analysis, offset).map_or(Value::Null, written_limits))
@@ -153,8 +154,8 @@ fn object(index: usize, converter: Converter<'_>, version: &SceneVersion) -> Val
     facts
 }
 
-/// Returns a label for the object: its name or, if it has none, its kind. If an object without a
-/// name is repeated, its indices follow.
+/// Returns a label for the object: its name or, if it has none, its kind. The label of a repeated
+/// object without a name also contains the object's indices.
 fn label(object: &Object) -> Cow<'_, str> {
     let kind = object.shape.kind();
     match (&object.name, &*object.indices) {
@@ -169,8 +170,8 @@ fn label(object: &Object) -> Cow<'_, str> {
 fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
     let shown = shown(params)?;
     let objects = &version.scene.objects;
-    // Unless the client names the objects, the first checkerboard is always listed, even if many
-    // objects precede it, since other objects stand on it.
+    // The first checkerboard is listed even if many objects precede it, since other objects usually
+    // stand on it. If the client selects objects one by one, only these are listed.
     let floor = match shown {
         ShownObjects::First(_) => objects.iter().position(is_board),
         ShownObjects::Only(_) => None,
@@ -180,8 +181,8 @@ fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> 
     let listed = listed.map(|index| {
         let mut object = object(index, converter, version);
         let outline = overlays.objects.iter().find(|it| it.object == index);
-        // A checkerboard may be visible although it has no outline. Its place is then null, not
-        // "not in the picture".
+        // A checkerboard may be visible although it has no outline. So its place is unknown (null),
+        // and must not be reported as outside of the picture.
         let outline = outline.filter(|it| !(it.lines.is_empty() && is_board(&objects[index])));
         object["place"] = json!(outline.map(|outline| place(outline, overlays.size)));
         object
@@ -244,9 +245,9 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion
     }))
 }
 
-/// Describes where an object is in the picture, such as "top left". Only its first handle is
-/// considered, i.e. the first point by which a user can drag the object. If this point is outside
-/// of the picture, returns a phrase that says so.
+/// Describes where an object is in the picture, such as "top left". The place is that of the
+/// object's first handle, i.e. the first point by which a user can drag it. If this point is
+/// outside of the picture, returns a phrase that says so.
 fn place(outline: &ObjectOverlay, size: [u32; 2]) -> String {
     let at = outline.handles.first().and_then(|(_, at)| *at);
     let size = DVec2::from(size.map(f64::from));

@@ -1,8 +1,7 @@
-//! Caches the scene of one version of a text, together with the data from which its pictures and
-//! rays are traced ([`World`]).
+//! Caches the scene of one version of a text, and the tracer's data for this scene ([`World`]).
 //!
-//! The scene and this data are computed only once for each version. Without the cache, each click
-//! on a picture of 100 000 spheres would first prepare all spheres for tracing.
+//! Both are computed only once for each version. Without the cache, each click on a picture of 100
+//! 000 spheres would first prepare all spheres for tracing.
 
 use std::collections::VecDeque;
 
@@ -16,10 +15,10 @@ use crate::{
     tracer::World,
 };
 
-/// Maximum number of picture sizes for which the data of the tracer ([`World`]) are cached. For a
-/// further size, the oldest entry is dropped. A page needs few sizes at a time: the scene's own and
-/// some coarser ones, which it shows until the full picture is finished. A larger number would use
-/// more memory.
+/// Maximum number of picture sizes for which the tracer's data ([`World`]) are cached. If another
+/// size is requested, the oldest entry is dropped. A web page needs only a few sizes at a time:
+/// that of the scene, and some smaller ones, which it shows until the full picture is finished. A
+/// larger number would use more memory.
 const WORLDS: usize = 4;
 
 /// A version of a text without errors, with its scene.
@@ -32,9 +31,9 @@ pub struct SceneVersion {
     /// Span of each object's name or, if an object has no name, of its keyword.
     pub selections: Vec<Span>,
     worlds: VecDeque<(u32, World)>,
-    /// Text of the scene without all objects except the one that was dragged last, with the index
-    /// of this object. The index is `None` if the camera was dragged. The field is `None` before
-    /// the first drag.
+    /// Copy of the scene's text in which all objects are removed except the object that was dragged
+    /// last, together with this object's index. The index is `None` if the camera was dragged. The
+    /// field is `None` before the first drag.
     alone: Option<(Option<usize>, Sources)>,
 }
 
@@ -73,9 +72,11 @@ impl SceneVersion {
         (&self.scene, &self.worlds[index].1)
     }
 
-    /// Returns the scene, and a text that contains no other object than `object`, or no object at
-    /// all if it is `None`. A drag is computed from the shorter text, which is faster to evaluate.
-    /// The text is cached, since each movement of the pointer needs it.
+    /// Returns the scene, and a copy of its text in which all objects are removed except `object`.
+    /// If `object` is `None`, all objects are removed.
+    ///
+    /// A drag is computed from this copy, because a shorter text is faster to evaluate. The copy is
+    /// cached, since each movement of the pointer needs it.
     pub fn alone(&mut self, sources: &Sources, object: Option<usize>) -> (&Scene, &Sources) {
         let known = self.alone.take_if(|(known, _)| *known == object);
         let made = || (object, viewport::alone(sources, &self.scene, object));

@@ -5,12 +5,12 @@
 //! other messages, such as a cancellation.
 //!
 //! Each answer is about the text at the time of the request: before a text changes, all waiting
-//! requests about it are answered. Diagnostics are computed only for the last version of a text.
+//! requests about it are answered. Diagnostics are computed only for the latest version of a text.
 //!
-//! A frame, i.e. a picture for a page, is rendered in slices while no other request waits. It is
-//! dropped if its text changes. If the text has errors, a request with the parameter `last` is
-//! answered with a frame of the last version without errors; rendering of this frame continues when
-//! the text changes.
+//! A frame, i.e. a picture for a web page, is rendered in slices while no other request waits. The
+//! frames of a text are dropped when the text changes. There is one exception: if the text has
+//! errors and the request sets the parameter `last`, the frame shows the last version without
+//! errors, and further changes of the text do not drop it.
 
 use std::{
     cell::LazyCell,
@@ -58,17 +58,16 @@ pub struct Server {
     /// For each document whose picture was requested, the scene of the current version. The scene
     /// is `None` if this version has errors.
     scenes: HashMap<Uri, Option<SceneVersion>>,
-    /// For each text that has changed, its last scene without errors, which belongs to an earlier
-    /// version. While the text has errors, requests with the parameter `last` are answered with
-    /// frames of this scene.
+    /// Scene of the last version without errors of each text that has changed since. While the text
+    /// has errors, this scene is shown by frames whose request sets the parameter `last`.
     last: HashMap<Uri, Option<SceneVersion>>,
     frames: Frames,
     log: fn(&str),
 }
 
 impl Server {
-    /// Creates a server that waits for `initialize`. For each notification that cannot be carried
-    /// out, it calls `log` with a message.
+    /// Creates a server that waits for `initialize`. The server calls `log` with a message for each
+    /// notification that it cannot carry out.
     pub fn new(log: fn(&str)) -> Self {
         Self {
             phase: Phase::Silent,
@@ -129,7 +128,7 @@ impl Server {
         self.work_on(next.as_ref(), is_changed)
     }
 
-    /// Answers all waiting requests for whose text `is_about` returns `true`.
+    /// Answers the waiting requests about certain texts: those for which `is_about` returns `true`.
     fn answer_all(&mut self, is_about: impl Fn(Option<&Uri>) -> bool) -> Vec<Message> {
         let mut outgoing = Vec::new();
         while let Some(request) = self.waiting.iter().find(|it| is_about(uri(it).as_ref())) {
@@ -224,8 +223,9 @@ impl Server {
     /// for example because the text had errors.
     fn outdate(&mut self, uri: &Uri) -> Vec<Message> {
         let Some(version @ Some(_)) = self.scenes.remove(uri) else {
-            // The text had errors already, or its scene was not requested since its last change. So
-            // its unfinished frames show the scene in `last`, and rendering them continues.
+            // There is no scene if the text had errors before this change, or if no picture was
+            // requested since the change before. In these cases, its unfinished frames show the
+            // scene in `last`, so they are not dropped.
             return Vec::new();
         };
         self.last.insert(uri.clone(), version);

@@ -20,7 +20,7 @@ use super::{
     server::Server,
 };
 
-/// Message from the client, or the response to it if it is malformed.
+/// Message from the client, or the error response to a malformed message.
 type Incoming = Result<Message, Value>;
 
 /// Runs a server until the client sends `exit` or the input ends. Returns whether the connection
@@ -87,7 +87,7 @@ fn read(input: impl Read, sender: &Sender<Incoming>, log: fn(&str)) {
             Ok(Some(message)) => {
                 let is_exit =
                     matches!(&message, Ok(Message::Notification(n)) if n.method == "exit");
-                // The thread stops reading after `exit`.
+                // After `exit`, the client sends no further messages, so the thread ends.
                 if sender.send(message).is_err() || is_exit {
                     return;
                 }
@@ -144,8 +144,8 @@ fn next(input: &mut impl BufRead) -> Result<Option<Incoming>, Failed> {
     }
 }
 
-/// Reads the header of a message. Returns the announced length of the message, or `None` at the end
-/// of the input.
+/// Reads the header of a message. Returns the length of the message in bytes, as stated in the
+/// header, or `None` at the end of the input.
 fn length(input: &mut impl BufRead) -> Result<Option<u64>, Failed> {
     let mut length = None;
     loop {

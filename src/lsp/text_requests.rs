@@ -110,7 +110,8 @@ fn code_actions(converter: Converter<'_>, analysis: &Analysis<'_>, params: &Valu
         let fixes = editor::fixes(analysis, converter.span(range));
         actions.extend(fixes.map(|(diagnostic, fix)| converter.action(fix, Some(diagnostic))));
     }
-    // Besides the fixes at the cursor, "fix all" is offered if several diagnostics have safe fixes.
+    // The quick fixes at the cursor are complete. A fix of all diagnostics is added if several of
+    // them have safe fixes.
     let all = analysis.diagnostics().iter();
     let has_safe = |it: &&Diagnostic| it.fixes.iter().any(Fix::is_safe);
     let is_more = !actions.is_empty() && all.filter(has_safe).count() > 1;

@@ -14,14 +14,15 @@ impl BlockRow {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// Returns the fields that `written`, a word of uncertain meaning, may stand for.
+    /// Returns the fields that people may mean by `written`, a word that is used for several fields
+    /// by mistake.
     pub fn fields_perhaps(&self, written: &str) -> impl Iterator<Item = &'static FieldRow> {
         let fields = self.fields.iter();
         fields.filter(move |field| is_among(written, field.perhaps))
     }
 
-    /// Returns the help for a word that stands for a field in other programs but for no field of
-    /// this block.
+    /// Returns the help for a word that names a field in other programs, although this block has no
+    /// such field. Returns `None` for any other word.
     pub fn elsewhere(&self, written: &str) -> Option<&'static str> {
         let mut rows = self.elsewhere.iter();
         let row = rows.find(|(words, _)| is_among(written, words));
@@ -33,8 +34,10 @@ impl BlockRow {
         self.fields.iter().map(|field| field.name)
     }
 
-    /// Returns the names of the fields to which values without names at the start of a block
-    /// probably belong, as in `sphere { (0, 1, 0) 2 }`. Returns an empty list if they are unknown.
+    /// Guesses the fields of values that are written without names at the start of a block, as in
+    /// `sphere { (0, 1, 0) 2 }`, and returns the fields' names. Returns an empty list if no fields
+    /// fit.
+    ///
     /// `are_vectors` says of each value whether it is a vector.
     pub fn names_of_values(&self, are_vectors: &[bool]) -> &'static [&'static str] {
         let is_vector = |name: &&str| self.field(name).map(|field| field.takes == Type::Vector);
@@ -104,8 +107,9 @@ impl BlockRow {
         find(|field| field.name).or_else(|| find(|field| field.also_tried))
     }
 
-    /// Returns the field that was probably meant by `written`: its name is similar to `written` or
-    /// occurs in it as a word, as in `near_clip` and `eyepoint`.
+    /// Returns the field that was probably meant by `written`. The field's name is similar to
+    /// `written`, or `written` contains the name as a word or at its start: `near` in `near_clip`,
+    /// `eye` in `eyepoint`.
     pub fn nearest_field(&self, written: &str) -> Option<&'static FieldRow> {
         let words = suggest::words(written);
         let starts = |field: &&FieldRow| field.name.len() > 2 && written.starts_with(field.name);

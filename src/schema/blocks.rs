@@ -33,27 +33,29 @@ pub struct BlockRow {
     /// Conditions that relate several fields, such as `near < far`, as formulas with the fields'
     /// names.
     pub together: &'static [&'static str],
-    /// Words that people use by mistake to give several fields at once, as in
-    /// `resolution (640, 480)`, each with the names of these fields.
+    /// Words that people write by mistake to set several fields at once, as in
+    /// `resolution (640, 480)`. An element consists of such words, separated by spaces, and the
+    /// names of the fields.
     pub several: &'static [(&'static str, &'static [&'static str])],
     /// Sets of words that people use together by mistake, such as `x y z` for the coordinates of a
     /// centre.
     ///
-    /// The words of a set are separated by spaces, and the sets of one entry by `|`. The second
-    /// element of an entry names either one field, if the words stand for its coordinates or
-    /// colours, or one field for each word.
+    /// The first part of an entry is a list of such sets: `|` separates sets, and a space separates
+    /// words. The second part names the fields that were meant: one field if each word stands for
+    /// one component of its value, or else one field for each word.
     pub parted: &'static [(&'static str, &'static [&'static str])],
     /// Words that people use by mistake for the keyword, separated by spaces.
     pub also_tried: &'static str,
-    /// Words that stand for a field in other programs but for no field of this block. The words of
-    /// one element are separated by spaces, and its help says what to write instead.
+    /// Words that name a field in other programs, although this block has no such field. An element
+    /// consists of such words, separated by spaces, and help that says what to write instead.
     pub elsewhere: &'static [(&'static str, &'static str)],
-    /// For values without names at the start of a block, as in `sphere { (0, 1, 0) }`, the fields
-    /// to which they may belong. Each list has one field for each value.
+    /// Fields that are probably meant by values without names at the start of a block, as in
+    /// `sphere { (0, 1, 0) }`. Each list names one field for each value.
     pub nameless: &'static [&'static [&'static str]],
-    /// The fields that an editor writes for a new object. The editor replaces `{at}` by a free
-    /// place, `{across}` by the direction from this place to the camera, `{size}` by half of the
-    /// object's size, `{twice}` by the whole size, and `{below}` by a height below all objects.
+    /// Text of the fields of an object that an editor adds to a scene. The editor replaces `{at}`
+    /// by a free place, `{across}` by the direction from this place to the camera, `{size}` by half
+    /// of the object's size, `{twice}` by the whole size, and `{below}` by a height below all
+    /// objects.
     pub added: &'static str,
 }
 
@@ -83,8 +85,8 @@ impl<T> FieldHandle<T> {
 }
 
 impl<T: FieldValue> FieldHandle<T> {
-    /// Returns `value` if `name` is the field's name, and otherwise `None`. An object finds the
-    /// value for a name by trying its fields in turn.
+    /// Returns `value` if `name` is the field's name, and otherwise `None`. To find the value for a
+    /// name, an object calls this function for each of its fields.
     pub fn of<'a>(self, name: &str, value: &'a mut T) -> Option<&'a mut dyn FieldValue> {
         (name == self.name).then_some(value)
     }
@@ -148,7 +150,8 @@ macro_rules! blocks {
     };
 }
 
-/// Template of the table's rows, without fields or additional words. A row replaces some columns.
+/// Default contents of a row: no fields and no additional words. Each row of the table overrides
+/// some of them.
 const BLOCK: BlockRow = BlockRow {
     kind: BlockKind::Image,
     name: "",
@@ -371,6 +374,6 @@ const POSITION: &str = "position pos at centroid middle location";
 /// Words that people use by mistake for the colour of an object.
 const COLOR: &str = "fill material";
 
-/// Shapes that other programs have but this language lacks, separated by spaces. With this list,
-/// the help for such a word can say that other shapes are made of triangles.
+/// Shapes that other programs have but this language lacks, separated by spaces. For a word in this
+/// list, a message's help says that other shapes are made of triangles.
 pub const OTHER_SHAPES: &str = "cylinder cone torus disk disc pyramid quad mesh prism";

@@ -84,7 +84,7 @@ impl Function {
     pub fn example(&self) -> &'static [&'static str] {
         use Type::{Angle, Number, Vector};
         match self.takes {
-            // The arguments are chosen so that the dot product is not 0, which few fields accept.
+            // A dot product of 0 would be a poor example, because few fields accept 0.
             [Vector, Vector] if self.gives == Number => &["(1, 2, 3)", "(0, 1, 0)"],
             [Vector, Vector] => &["(1, 0, 0)", "(0, 1, 0)"],
             [Vector] => &["(1, 2, 3)"],

@@ -106,8 +106,9 @@ pub fn nearest_method(written: &str) -> Option<&'static str> {
     tried.or_else(|| suggest::nearest(written, method_names()))
 }
 
-/// Returns whether `written` can only mean the technique that is named `near`: people use it by
-/// mistake for this technique, or it is similar to this name alone.
+/// Returns whether `written` certainly means the technique named `near`. This is so if `written` is
+/// a word that people use by mistake for this technique, or if `near` is the only technique with a
+/// similar name.
 pub fn is_sure_method(written: &str, near: &str) -> bool {
     let mut tried = ALSO_TRIED.iter();
     tried.any(|(method, words)| method.name() == near && is_among(written, words))

@@ -1,12 +1,12 @@
 //! The tables of the language: its blocks and their fields, types, defaults and conditions, each
 //! with a line of help.
 //!
-//! Each fact about the language stands here once. A scene gets its defaults from these tables,
+//! Each fact about the language is stated here once. A scene gets its defaults from these tables,
 //! suggestions are chosen from them, and the language's reference is tested against them.
 //!
-//! `types` defines the language's types and `row_types` most columns of the table. The rows are in
-//! `blocks`, `methods` and `builtins`, and the names of colours in `css`. Lookups are in this file
-//! and in `block_row`.
+//! `types` defines the language's types, and `row_types` the types of a row's parts. The rows
+//! themselves are in `blocks`, `methods` and `builtins`, and the names of colours are in `css`.
+//! Lookups are in this file and in `block_row`.
 
 mod block_row;
 mod blocks;
@@ -71,7 +71,8 @@ pub enum Predefined {
 }
 
 impl Predefined {
-    /// Returns what the name means in words, for messages, such as "a function".
+    /// Returns words for a message that say what kind of thing the name stands for, such as "a
+    /// function".
     pub fn noun(&self) -> &'static str {
         match self {
             Self::Function(_) => "a function",
@@ -81,7 +82,7 @@ impl Predefined {
     }
 }
 
-/// Returns the meaning of a predefined name; `None` for any other name.
+/// Returns the meaning of a predefined name. Returns `None` for any other name.
 pub fn predefined(name: &str) -> Option<Predefined> {
     let color = css::color(name).map(Value::Color);
     let constant = || CONSTANTS.iter().find(|(constant, ..)| *constant == name);

@@ -8,8 +8,8 @@ use glam::DVec3;
 use super::types::{Type, Value};
 use crate::math::compare_half_turns;
 
-/// Fields that exclude each other. They are grouped into alternative ways to express the same
-/// thing, and a block uses the fields of one way only.
+/// Alternative ways to express the same thing, each with its own fields. A block may use the fields
+/// of only one way.
 #[derive(Debug)]
 pub struct Choice {
     /// The alternative ways, each a list of fields. If a block uses a way, it must have all fields
@@ -46,8 +46,8 @@ pub struct FieldRow {
 }
 
 impl FieldRow {
-    /// Returns the row of a field without conditions or additional words. Its example is its
-    /// default.
+    /// Returns the row of a field without conditions or additional words. The field's default, if
+    /// any, is also its example.
     pub(super) const fn new(
         name: &'static str,
         takes: Type,
@@ -77,13 +77,14 @@ impl FieldRow {
     }
 }
 
-/// The default of a field. If it has none, says whether a block must have the field.
+/// The default of a field. For a field without a default, the variant says whether a block must
+/// have the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Preset {
     /// No default: the field is required.
     Required,
-    /// No default: the field belongs to one way of a [`Choice`], i.e. one of several alternatives,
-    /// and is required if the block uses this way.
+    /// No default: the field belongs to one of the alternative ways of a [`Choice`]. The field is
+    /// required if the block uses this way.
     Alternative,
     /// No default: the field may be left out.
     Nothing,

@@ -4,10 +4,11 @@ use std::fmt;
 
 use crate::{math::Angle, numbers};
 
-/// Makes the language's types and their values, each with a Rust type.
+/// Defines the enums of the language's types and values, and implements [`FieldValue`] for the Rust
+/// type of each.
 ///
-/// A line gives the variant with its Rust type, the type with its article, the plural, and the help
-/// that says what to write for a value of the type.
+/// Each line contains a variant's name, its Rust type, the type's name with an article, the plural,
+/// and the help that says what to write for a value of the type.
 macro_rules! types {
     ($($variant:ident($contents:ty) noun $noun:literal plural $plural:literal such_as $such_as:literal;)*) => {
         /// A type of the language.
@@ -156,7 +157,7 @@ pub trait FieldValue {
     where
         Self: Sized;
 
-    /// Returns this as a value of the language.
+    /// Converts the Rust value into a value of the language.
     fn value(&self) -> Value;
 
     /// Replaces this value by `value`. Returns `None`, and changes nothing, if `value` has another

@@ -24,8 +24,8 @@ pub struct Client {
 
 impl Client {
     /// Reads the client's capabilities from the parameters of `initialize`. The fields are looked
-    /// up one by one: generating types for all of them would make the program compile about 5 %
-    /// longer.
+    /// up one by one, because generated types for all of them would lengthen compilation by about 5
+    /// %.
     pub fn new(params: &Value) -> Self {
         let field = |path: &str| params.pointer(path);
         let can = |path: &str| field(path) == Some(&Value::Bool(true));

@@ -26,8 +26,7 @@ impl Converter<'_> {
             CompletionKind::Block => 22,
         };
         let documentation = match completion.kind {
-            // If the documentation is only a colour code, editors show the colour beside the
-            // completion.
+            // Editors show the colour beside the completion if the documentation is only a colour code.
             CompletionKind::Color(color) => json!(color.to_string()),
             _ => markup(completion.help),
         };

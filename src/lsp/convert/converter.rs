@@ -67,8 +67,8 @@ impl Converter<'_> {
         count(self.client.encoding.columns(text))
     }
 
-    /// Converts a diagnostic to the protocol's type. The help is appended to the message, and all
-    /// labels except the first become related information.
+    /// Converts a diagnostic to the protocol's type. The diagnostic's help text is appended to its
+    /// message, and all labels except the first become related information.
     pub fn diagnostic(&self, diagnostic: &Diagnostic) -> Value {
         let mut labels = diagnostic.labels.iter();
         let place = labels.next().map(|label| self.range(label.span));
@@ -149,14 +149,16 @@ impl Converter<'_> {
         json!({ "documentChanges": [{ "textDocument": document, "edits": edits }] })
     }
 
-    /// Converts a fix to a code action. `of` is the diagnostic that it fixes; `None` if it fixes
-    /// all diagnostics. If the fix inserts example values for the user to replace, they become
-    /// placeholders of a snippet, provided that the client supports snippets in edits.
+    /// Converts a fix to a code action. `of` is the diagnostic that the fix belongs to, or `None`
+    /// for a fix of all diagnostics.
+    ///
+    /// If the client supports snippets in edits, the example values in a fix of one line become
+    /// placeholders, which the user replaces.
     pub fn action(&self, fix: &Fix, of: Option<&Diagnostic>) -> Value {
         let is_made_up = fix.applicability == Applicability::Placeholder;
         let edit = match (is_made_up, fix.edits.as_slice()) {
-            // A fix of several lines does not become a snippet, because an editor would indent all
-            // lines after the first once more.
+            // A fix of several lines does not become a snippet: its lines are indented already,
+            // and an editor would indent those after the first again.
             (true, [only]) if self.client.snippet_edits && !only.text.trim().contains('\n') => {
                 self.snippet(only)
             }
@@ -266,8 +268,8 @@ impl Converter<'_> {
 }
 
 /// Reads the changes of a text from a notification. A change without the field `range` replaces the
-/// whole text. A `range` of null is an error: as a missing one, it would let a change of a part
-/// replace the whole text.
+/// whole text. If `range` is null, an error is returned, because the client may have meant to
+/// replace only a part.
 pub fn changes(params: &Value) -> Result<Vec<TextChange>, Refusal> {
     let changes: Vec<Value> = at(params, "/contentChanges")?;
     let change = |change: &Value| {

@@ -1,5 +1,6 @@
 //! Converts between the types of the editor module and the types of the language server protocol.
-//! The protocol uses numbers for kinds; comments give the protocol's names for these numbers.
+//! The protocol identifies kinds of completions, symbols and so on by numbers; comments give their
+//! names.
 
 mod client;
 mod completion;
