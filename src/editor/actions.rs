@@ -11,8 +11,8 @@ use crate::{
     syntax::tokens::{Lexer, TokenKind},
 };
 
-/// Returns the fixes of all problems whose first label touches the bytes `within`, each together
-/// with its problem. Editors underline a problem at its first label.
+/// Returns the fixes of all problems whose first label touches the byte range `within`, as pairs of
+/// a problem and a fix. The first label is the place where editors underline a problem.
 pub fn fixes<'a>(
     analysis: &'a Analysis<'_>,
     within: Span,

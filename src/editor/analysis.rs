@@ -30,7 +30,8 @@ pub(super) struct Path<'a, 's> {
     pub definition: Option<&'a Definition<'s>>,
     /// The block that contains the offset.
     pub block: Option<&'a Block<'s>>,
-    /// The field of the block that contains the offset.
+    /// The values that contain the offset. Each value is a part of the one before it, such as `1`
+    /// in `1 + x`.
     pub field: Option<&'a Field<'s>>,
     /// The values that contain the offset. Each value is a part of the one before it, as `1` is of
     /// `1 + x`.
@@ -119,8 +120,8 @@ impl<'s> Analysis<'s> {
         Path::new(self.items(), at)
     }
 
-    /// Returns the block that contains the offset `at` and the `for` index `name` of this block, as
-    /// `i` in `for i < 3`. Returns `None` if the block has no index `name`.
+    /// Returns the block that contains the offset `at`, and this block's `for` index with the given
+    /// name, such as `i` in `for i < 3`. Returns `None` if the block has no such index.
     pub(super) fn index_at(&self, name: &str, at: usize) -> Option<(&Block<'s>, &Index<'s>)> {
         let block = self.path(at).block?;
         let mut indices = block.repetition.iter().flat_map(|it| &it.indices);

@@ -1,8 +1,9 @@
-//! Finds the colours in a text, and returns the texts that can replace one of them by a new colour.
+//! Finds the colours in a text, and returns the ways to write a new colour in the place of an old
+//! one.
 //!
-//! The replacement keeps the form of the old text: a name stays a name if the new colour has one, a
-//! code such as `#ff0000` stays a code, and `rgb(…)` stays a call. A call that contains expressions
-//! or comments cannot be replaced, since they would be lost.
+//! The new text has the form of the old one: a name stays a name if the new colour has one, a code
+//! such as `#ff0000` stays a code, and `rgb(…)` stays a call. A call that contains expressions or
+//! comments cannot be replaced, since they would be lost.
 
 use super::{analysis::Analysis, tokens::Role};
 use crate::{
@@ -75,9 +76,9 @@ fn is_plain(analysis: &Analysis<'_>, span: Span, call: &Call<'_>) -> bool {
     are_numbers && !comments.get(next).is_some_and(is_inside)
 }
 
-/// Returns the texts that can replace the colour at `span` by `color`. The first one has the same
-/// form as the old text: a name, a code or a call. Returns an empty list if the text at `span` is a
-/// call that cannot be replaced.
+/// Returns the ways to write `color` in the place of the colour at `span`. The first one has the
+/// same form as the old text: a name, a code or a call. Returns an empty list if the text at `span`
+/// is a call that cannot be replaced.
 pub fn presentations(analysis: &Analysis<'_>, span: Span, color: Color) -> Vec<String> {
     let own = match analysis.token_at(span.start).map(|token| token.role) {
         Some(Role::Function) => {
@@ -103,8 +104,8 @@ pub fn presentations(analysis: &Analysis<'_>, span: Span, color: Color) -> Vec<S
     presentations
 }
 
-/// Returns the name of a colour, if it has one. If it has several, returns the first in
-/// alphabetical order, such as the American `gray` rather than `grey`.
+/// Returns the name of a colour, or `None` if it has no name. A colour with several names gets the
+/// first in alphabetical order, such as the American `gray` rather than `grey`.
 fn name(color: Color) -> Option<&'static str> {
     let bytes = color.to_bytes();
     let is_it = |name: &&str| css::color(name).is_some_and(|named| named.to_bytes() == bytes);

@@ -172,8 +172,8 @@ fn block_with_fields(row: &schema::BlockRow) -> Vec<SnippetPart> {
     pieces
 }
 
-/// Splits an example value into the parts of a snippet. A list gets a placeholder for each of its
-/// elements, any other value one placeholder.
+/// Splits an example value into the parts of a snippet. Each element of a list becomes a
+/// placeholder. A value that is not a list becomes one placeholder.
 fn value_to_type_over(example: &str) -> Vec<SnippetPart> {
     let inner = example.strip_prefix('(').and_then(|e| e.strip_suffix(')'));
     match inner {

@@ -37,10 +37,11 @@ pub struct Situation {
     /// Span of the name whose definition is being typed. The definition's value cannot use this
     /// name.
     pub defining: Option<Span>,
-    /// Whether the value of a field or definition is to be typed, and no part of it is there yet.
+    /// Whether the cursor is where the value of a field or definition belongs, and no part of the
+    /// value is typed yet.
     pub is_whole_value: bool,
-    /// Whether the text that has to follow the typed word is there already: the braces of a block,
-    /// the value of a field, or the arguments of a function.
+    /// Whether the text that must follow the typed word already exists: the braces of a block, the
+    /// value of a field, or the arguments of a function.
     pub goes_on: bool,
     /// Span of the word that is being typed; empty if no word is being typed.
     pub word: Span,
@@ -163,8 +164,8 @@ fn open_lists(analysis: &Analysis<'_>, at: usize) -> usize {
 }
 
 /// Returns what can be typed in place of `word`. `path` is the path in the syntax tree to the name
-/// that replaces `word` while the text is parsed. Returns `None` in the name of a definition or in
-/// the head of a block.
+/// that replaces `word` while the text is parsed. Returns `None` in the name of a definition, and
+/// in the part of a block between its keyword and its braces.
 fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
     let row = path
         .block
@@ -204,8 +205,8 @@ fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
         situation.goes_on = !is_empty && next.is_none();
     } else if let Some(block) = path.block {
         situation.expected = expected_in(block, word.start)?;
-        // If another block follows, the parser reads its keyword as the name of this block, and its
-        // braces as those of this block.
+        // If a complete block follows the typed word, the parser reads the following keyword as the
+        // name of the typed block. The braces then belong to the following block.
         let is_own =
             |block: &Block<'_>| block.name.is_none_or(|it| schema::block(it.text).is_none());
         situation.goes_on = block.open.is_some() && is_own(block);
@@ -230,8 +231,8 @@ fn is_cursor(value: &tree::Value<'_>) -> bool {
 }
 
 /// Returns what can be typed at the offset `at`, which is in a block but not in one of its fields:
-/// a keyword at the start of the block, or a field between the braces. Returns `None` elsewhere in
-/// the block's head.
+/// a keyword at the start of the block, or a field between the braces. Returns `None` between the
+/// keyword and the braces.
 fn expected_in(block: &Block<'_>, at: usize) -> Option<Expected> {
     if block.kind.is_some_and(|kind| kind.text == CURSOR) {
         return Some(Expected::Item);
@@ -253,8 +254,8 @@ fn wanted(path: &Path<'_, '_>, takes: Option<Type>) -> Option<Type> {
             }
             ValueKind::Tuple(_) | ValueKind::Parentheses(_) => match wanted {
                 Some(Type::Colors | Type::FaceColors) => Some(Type::Color),
-                // A vector consists of numbers, and parentheses in an expression usually contain
-                // numbers.
+                // A part of a vector is a number. In an expression whose value is a vector,
+                // parentheses usually contain a number, too.
                 Some(Type::Vector) => Some(Type::Number),
                 wanted => wanted,
             },

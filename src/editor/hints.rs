@@ -147,8 +147,8 @@ fn beside(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> Opti
     }
 }
 
-/// Returns whether a reported problem has a label at the field's name or at the block's keyword, as
-/// problems about conflicting fields have.
+/// Returns whether a reported problem has a label at the field's name or at the block's keyword.
+/// Problems about conflicting fields have such labels.
 fn is_disputed(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> bool {
     let diagnostics = analysis.diagnostics().iter();
     let mut labels = diagnostics.flat_map(|diagnostic| &diagnostic.labels);

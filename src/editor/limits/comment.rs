@@ -8,8 +8,8 @@ use crate::{numbers::significant, syntax::tree::Unit};
 pub struct CommentRange {
     /// The lower and the upper end of the range, in the unit of the value.
     pub ends: [f64; 2],
-    /// Distance between neighbouring values of the slider, > 0; `None` if the comment gives no
-    /// step.
+    /// Distance between neighbouring values of the slider, a positive number. `None` if the comment
+    /// gives no step.
     pub step: Option<f64>,
     /// Whether a number of the range was converted between degrees and radians. A converted number
     /// has more digits than a slider should show.
@@ -44,9 +44,9 @@ pub fn range_behind(behind: &str) -> Option<&str> {
     (range.contains(':') && range.split(':').any(is_number)).then_some(range)
 }
 
-/// Parses the range of a slider, such as `1:5` or `1:0.1:5`: an end, a step if there are three
-/// numbers, and the other end. Either end may come first. The numbers are converted to `unit`, the
-/// unit of the slider's value.
+/// Parses the range of a slider, such as `1:5` or `1:0.1:5`. The first and the last number are the
+/// ends of the range, the larger or the smaller first. If there are three numbers, the middle one
+/// is the step. The numbers are converted to `unit`, the unit of the slider's value.
 ///
 /// # Errors
 ///

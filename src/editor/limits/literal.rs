@@ -5,9 +5,9 @@ use crate::{
     syntax::tree::{Unit, Value, ValueKind},
 };
 
-/// Minimum decimal exponent of a slider's step; the maximum exponent is 300. Literals of a slider
-/// have exponents within the same limits. These powers of ten are far from the ends of `f64`'s
-/// range, so computations with them neither overflow nor become 0.
+/// Minimum decimal exponent of a slider's step, and of the number that the slider changes. The
+/// maximum exponent is 300. These powers of ten are far from the ends of `f64`'s range, so
+/// computations with them neither overflow nor become 0.
 const LEAST_EXPONENT: i32 = -300;
 
 /// Maximum number of significant digits of a number that a slider changes. The slider's step is at
@@ -68,9 +68,9 @@ impl Literal {
         self.unit.is_none() && self.value.fract() == 0.0 && self.last_digit >= 0
     }
 
-    /// Returns the step of the literal's slider, a power of ten. It is a hundredth to a tenth of
-    /// the number, but at least 0.01. If the last written decimal is smaller, the step is one unit
-    /// in this decimal.
+    /// Returns the step of the literal's slider, a power of ten. Usually it is between a hundredth
+    /// and a tenth of the number, and at least 0.01. If the number is written with finer decimals,
+    /// the step is one unit in its last decimal.
     pub fn step(&self) -> f64 {
         let size = match self.value.abs() {
             0.0 => 0,

@@ -27,19 +27,19 @@ use crate::{
 const STEPS: f64 = 50.0;
 
 /// Minimum distance from a whole number, such as a count, to each end of its slider, in steps of 1.
-/// An end is nearer only if the numbers beyond it are not valid. Sliders of other numbers extend
-/// over more steps ([`STEPS`]), but 10 more or fewer objects already change a picture much.
+/// An end is nearer only if the numbers beyond it are not valid. The distance is shorter than for
+/// other numbers ([`STEPS`]), because 10 more or fewer objects already change a picture much.
 const STEPS_OF_COUNT: f64 = 10.0;
 
 /// Limits of a number in the text, and the range and step of its slider. All are given in the unit
 /// in which the number is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Least value of the number with which the text has no more errors than now; `None` if that
+    /// Smallest value that the number can have without a new error in the text. `None` if this
     /// value is not known.
     pub least: Option<f64>,
-    /// Greatest value of the number with which the text has no more errors than now; `None` if that
-    /// value is not known.
+    /// Largest value that the number can have without a new error in the text. `None` if this value
+    /// is not known.
     pub most: Option<f64>,
     /// Distance between neighbouring values of the slider.
     pub step: f64,
@@ -50,8 +50,8 @@ pub struct Limits {
     pub ends: [f64; 2],
 }
 
-/// The slider for the value of a definition. If the definition has no slider, or not the slider
-/// that its comment describes, a note says why.
+/// The slider for the value of a definition. If the definition's comment asks for a slider or a
+/// range that is not possible, a note says why.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slider<'a> {
     /// Name of the definition.
@@ -272,9 +272,9 @@ impl Bounds {
     }
 }
 
-/// Returns the unit in which the numbers of a field's value are written: `Some(None)` for numbers
-/// without a unit. Returns `None` for an expression, since the numbers in an expression need not
-/// meet the field's conditions.
+/// Returns the unit in which the numbers of a field's value are written. Returns `Some(None)` for
+/// numbers without a unit, and `None` for an expression, since the numbers in an expression need
+/// not meet the field's conditions.
 fn unit(value: &Value<'_>) -> Option<Option<Unit>> {
     match &value.kind {
         ValueKind::Number(_) => Some(None),

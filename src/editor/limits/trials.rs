@@ -7,10 +7,10 @@ use crate::{
     source::{Source, Sources},
 };
 
-/// Maximum cost of all trials for one answer to the editor, in bytes of analyzed text. A trial is
-/// an analysis of the text with another number in it, and is not made if it would exceed the
-/// maximum. With a larger maximum, the limits of sliders in long texts would be found more often,
-/// but the answer could take longer. With 64 KiB, a text of 1 KiB can be tried 64 times.
+/// Maximum cost of all trials for one answer to the editor, in bytes of analyzed text. A trial
+/// analyzes the text with another number in it; a text of 1 KiB can be tried 64 times. With a
+/// larger maximum, the limits of sliders in long texts would be found more often, but the answer
+/// could take longer.
 const BYTES: usize = 1 << 16;
 
 /// Cost of making one object of a scene, in bytes of text: making an object is assumed to take as
@@ -57,8 +57,8 @@ impl<'a, 's> Trials<'a, 's> {
     }
 
     /// Estimates how many objects the text contains if `value` replaces the literal `count`.
-    /// Assumes the worst case: in the block with the most `for` indices, `count` is the count of
-    /// each index.
+    /// Assumes the worst case: in the block with the most `for` indices, the literal limits every
+    /// index.
     fn objects_with(&self, count: &Literal, value: f64) -> usize {
         let repetitions = self.analysis.blocks().flat_map(|it| &it.repetition);
         let indices = repetitions.map(|it| it.indices.len()).max().unwrap_or(0);
@@ -67,8 +67,9 @@ impl<'a, 's> Trials<'a, 's> {
         (0..indices).fold(objects, |all, _| all * growth) as usize
     }
 
-    /// Returns whether the literal seems to be a count, as in `for i < n`. It is a whole number,
-    /// both adding and subtracting 0.1 cause an error, and adding or subtracting 1 causes none.
+    /// Returns whether the literal seems to be a count, as in `for i < n`. A literal seems to be a
+    /// count if it is a whole number, both adding and subtracting 0.1 cause an error, and adding 1
+    /// or subtracting 1 causes none.
     pub fn is_count(&mut self, literal: &Literal) -> bool {
         let mut is_right = |by: f64| {
             let value = rounded(literal.value + by, 0.1);
@@ -80,9 +81,9 @@ impl<'a, 's> Trials<'a, 's> {
             && (is_right(1.0) == Some(true) || is_right(-1.0) == Some(true))
     }
 
-    /// Searches the numbers between the literal and `end`, in steps of `step`, for the last one
-    /// with which the text has no more errors than now. Uses bisection. Returns `end` if it is
-    /// valid or cannot be tried. Returns `None` if even the first step causes an error.
+    /// Searches the numbers from the literal towards `end`, in steps of `step`, for the last valid
+    /// one. A number is valid if the text has no new error with it. Uses bisection. Returns `end`
+    /// if it is valid or cannot be tried. Returns `None` if even the first step causes an error.
     ///
     /// If the budget for trials runs out during the search, returns the last number found to be
     /// valid, or `end` if none was found. If valid and invalid numbers alternate, returns one of

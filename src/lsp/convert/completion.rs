@@ -26,7 +26,8 @@ impl Converter<'_> {
             CompletionKind::Block => 22,
         };
         let documentation = match completion.kind {
-            // Editors show the colour beside the completion if the documentation is only a colour code.
+            // Editors show the colour beside the completion if the documentation is only a
+            // colour code.
             CompletionKind::Color(color) => json!(color.to_string()),
             _ => markup(completion.help),
         };
