@@ -124,8 +124,8 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
             && analysis.slice(token.span) == new
             && !is_elsewhere(token)
     };
-    // A use of `new` without a definition would refer to the renamed definition. So it also counts
-    // as a conflict.
+    // If the text uses `new` without a definition, this use would refer to the renamed definition,
+    // so it is a conflict, too.
     let taken = analysis.tokens().iter().find(is_taken);
     match taken.filter(|_| analysis.slice(name.span) != new) {
         Some(taken) => Err(format!(

@@ -16,7 +16,7 @@ pub struct SemanticToken {
     pub span: Span,
     /// Kind by which editors colour the token.
     pub kind: SemanticKind,
-    /// Whether the token is the name of a `let` or a `for` index in its own definition.
+    /// Whether the token defines a name, i.e. is the name after `let` or of a `for` index.
     pub is_declaration: bool,
 }
 

@@ -21,10 +21,9 @@ use crate::{
     tracer::vertices,
 };
 
-/// Maximum number of rows in which a free position for a new object is searched. Seen from the
-/// camera, each row is behind the one before it. A row has seven positions. If no position is free,
-/// a position that is already occupied is used. This is unlikely, since hardly anybody adds 700
-/// objects by hand.
+/// Maximum number of rows that are searched for a free position for a new object. A row has seven
+/// positions, and each row is farther from the camera than the one before it. If no position is
+/// free, an occupied one is used. This is unlikely, since hardly anybody adds 700 objects by hand.
 const ROWS: i32 = 100;
 
 /// Names of the colours of new objects, in the order in which they are tried. They differ clearly
@@ -127,9 +126,9 @@ fn free_color(scene: &Scene, own: &'static str) -> &'static str {
     found.unwrap_or(COLORS[scene.objects.len() % COLORS.len()])
 }
 
-/// Returns the scene of a text with errors as far as it is known, so that a new object can be
-/// placed in it. It contains the objects without errors. An image, camera or sampler with errors is
-/// replaced by the default one ([`SMALLEST`]).
+/// Returns a scene for a text with errors, so that a new object can be placed in it. The scene
+/// contains the objects without errors. If the image, camera or sampler has errors, it is replaced
+/// by the default one ([`SMALLEST`]).
 fn sketch(analysis: &Analysis<'_>) -> Option<Scene> {
     let smallest = Sources::new(Source::from_text("", SMALLEST));
     let smallest = Analysis::new(&smallest).scene()?;
@@ -148,9 +147,9 @@ fn sketch(analysis: &Analysis<'_>) -> Option<Scene> {
 }
 
 /// Returns the edit that inserts a copy of an object's block in the line after it. The copy is
-/// moved to the right by a twentieth of the picture's width. For this, only numbers that stand in
-/// the block itself are changed. A block whose position is given by names of definitions is
-/// therefore copied without a move.
+/// moved to the right by a twentieth of the picture's width. The move changes only numbers within
+/// the block. If the position is given by the names of definitions, the copy stays in the same
+/// place.
 pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option<Added> {
     let object = scene.objects.get(index)?;
     let block = analysis.blocks().find(|block| block.span == object.span)?;
@@ -200,9 +199,9 @@ fn free_name(analysis: &Analysis<'_>, kind: &str) -> String {
     names.into_iter().find(is_free).unwrap_or(capital)
 }
 
-/// Returns the height of a new checkerboard. It is 0 if possible, and otherwise a lower height that
-/// is below the eye, not above the lowest point of any object, and at least 1 below every other
-/// board.
+/// Returns the height of a new checkerboard: 0 or, if necessary, less. The checkerboard must be
+/// below the eye, at most as high as the lowest point of any object, and at least 1 below any other
+/// checkerboard.
 fn free_height(scene: &Scene) -> f64 {
     let below_eye = if scene.camera.eye.y > 0.0 {
         0.0
@@ -216,8 +215,8 @@ fn free_height(scene: &Scene) -> f64 {
     bottoms.fold(below_eye, f64::min)
 }
 
-/// Returns a free position in front of the camera for a new object: a cube that the object should
-/// fill, as its centre and half of its side length.
+/// Returns a free place in front of the camera for a new object. The place is a cube for the object
+/// to fill, given by its centre and half of its side length.
 fn free_place(scene: &Scene) -> (DVec3, f64) {
     let projection = Projection::new(&scene.camera, &scene.image);
     let distance = distance(scene);
@@ -225,8 +224,9 @@ fn free_place(scene: &Scene) -> (DVec3, f64) {
     let boards = scene.objects.iter();
     let boards = boards.filter_map(|object| Some(object.shape.checkerboard()?.y));
     let floors = boards.filter(|y| *y < projection.eye.y);
-    // Without a board, objects stand at the height 0 if the view axis passes near it, because a
-    // board that is added later usually has the height 0.
+    // If there is no board below the eye, a floor is assumed at the height 0, because a board that
+    // is added later usually has this height. This is done only if the view axis passes near that
+    // floor.
     let floor = floors.reduce(f64::max).or_else(|| {
         let bottom = projection.eye.y + projection.ahead.y * distance - size;
         (projection.eye.y > 0.0 && bottom.abs() <= size).then_some(0.0)

@@ -142,8 +142,8 @@ fn turned(camera: &Camera, projection: &Projection, by: DVec2) -> DVec3 {
     let axial = ahead.dot(up);
     let radial = ahead - up * axial;
     let polar = trig::atan2(radial.length(), axial).radians;
-    // If the camera looks straight up or down, its horizontal direction is the direction of the
-    // picture's top or bottom.
+    // If the camera looks straight up or down, no part of its direction is horizontal. The
+    // direction of the picture's top or bottom is used instead.
     let level = if radial == DVec3::ZERO {
         -level_top * axial.signum()
     } else {

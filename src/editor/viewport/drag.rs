@@ -45,8 +45,8 @@ pub struct Drag<'a> {
     /// Axis or plane along which the handle moves; `None` if it follows the pointer freely.
     pub along: Option<Along>,
     /// Maximum distance in the picture, in pixels, between neighbouring positions of the handle on
-    /// a grid; `None` if the drag does not snap to a grid. The changed numbers are multiples of the
-    /// grid's spacing, which is the greatest power of ten that satisfies this maximum.
+    /// a grid. `None` if the drag does not snap to a grid. The changed numbers become multiples of
+    /// the largest power of ten with which this distance is not exceeded.
     pub step: Option<f64>,
 }
 
@@ -375,7 +375,7 @@ fn landmarks(projection: &Projection, distance: f64) -> Option<Vec<DVec3>> {
     places.map(point).collect()
 }
 
-/// View of the scene before a drag. It shows whether two possible results of the drag look alike.
+/// Compares possible results of a drag, as they appear in the picture before the drag.
 struct DragView<'a> {
     image: &'a Image,
     projection: Projection,
@@ -387,10 +387,10 @@ struct DragView<'a> {
 }
 
 impl DragView<'_> {
-    /// Returns the number of decimals of the grid that the drag snaps to, and `step`, which is in
-    /// pixels. One unit in the last decimal moves the handle by at most `step`; the smallest number
-    /// of decimals with this property is used. Returns `None` for the camera, or if 12 decimals do
-    /// not suffice.
+    /// Returns the number of decimals to which the drag rounds numbers, together with the unchanged
+    /// `step`, in pixels. It is the smallest number of decimals for which one unit in the last
+    /// decimal moves the handle by at most `step`. Returns `None` for the camera, or if 12 decimals
+    /// do not suffice.
     fn snapped(&self, owner: FieldOwner, changes: &[FieldChange], step: f64) -> Option<(i32, f64)> {
         let held = |owner: FieldOwner| {
             let mut marks = self.marks(owner).into_iter();
@@ -409,9 +409,9 @@ impl DragView<'_> {
         Some(((-9..=12).find(is_small)?, step))
     }
 
-    /// Returns whether two states of the dragged object or camera look alike. This is so if the
-    /// position of each handle in or near the picture, and of the dragged handle, differs by at
-    /// most `tolerance` pixels between the states `found` and `ideal`.
+    /// Returns whether the states `ideal` and `found` of the dragged object or camera look alike,
+    /// i.e. whether each handle is at the same place within `tolerance` pixels. Handles far outside
+    /// of the picture are ignored, except the dragged one.
     fn agree(&self, ideal: FieldOwner, found: FieldOwner, tolerance: f64) -> bool {
         // A length that was rounded to few digits may have become 0, which the language forbids.
         if ideal.is_possible() && !found.is_possible() {

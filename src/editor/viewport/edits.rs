@@ -2,8 +2,8 @@
 //!
 //! In a literal, only the numbers that change are replaced, so that the others keep their spelling.
 //! If a name is used, the literal in its `let` is replaced. An expression gets an offset, such as
-//! `+ 0.5`, at its end; if it ends with an offset already, that one is changed. A missing field is
-//! added to its block.
+//! `+ 0.5`, at its end. If the expression already ends with a literal offset, the new amount is
+//! added to this offset. A missing field is added to its block.
 
 use glam::DVec3;
 
@@ -78,9 +78,9 @@ pub fn changes(block: &Block<'_>, current: FieldOwner, ideal: FieldOwner) -> Vec
         .collect()
 }
 
-/// Ratios of two fields' changes, along the same axis, that are kept exactly when the changes are
-/// rounded. Two vertices of a triangle move by the same amount (1). If the `size` of a box changes,
-/// its `center` moves by half as much in either direction (±1/2).
+/// Ratios between the changes of two fields along the same axis. If two changes have such a ratio,
+/// rounding keeps it exactly. Two vertices of a triangle move by the same amount (1). If the `size`
+/// of a box changes, its `center` moves by half as much in either direction (±1/2).
 const RATIOS: [f64; 3] = [1.0, 0.5, -0.5];
 
 /// Tolerance for the equality of two changes, relative to the largest change on the axis. It must
@@ -100,10 +100,10 @@ pub struct DecimalRounding {
     exact: Vec<f64>,
 }
 
-/// Rounds the changes of several fields to `decimals` decimals. On each axis where every change is
-/// the largest change times one of [`RATIOS`], the largest change is rounded, and the other changes
-/// are computed from it by the same ratios. So the points of the object that are not dragged stay
-/// exactly in place.
+/// Rounds the changes of several fields to `decimals` decimals, and keeps their ratios. On each
+/// axis, the largest change is rounded, and the others are computed from it by the same ratios as
+/// before. So the points of the object that are not dragged stay exactly in place. An axis on which
+/// a ratio is not one of [`RATIOS`] is left out.
 pub fn together(changes: &[FieldChange], decimals: i32) -> (Vec<FieldChange>, DecimalRounding) {
     let mut changes = changes.to_vec();
     let mut exact = Vec::new();
@@ -326,8 +326,8 @@ fn is_literal(tree: &tree::Value<'_>) -> bool {
     literal_unit(tree).is_some() || matches!(tree.kind, ValueKind::Tuple(_))
 }
 
-/// Returns the number of a number value, or the size of an angle in `unit`. Returns 0 for any other
-/// value.
+/// Converts a value to a plain number. An angle is measured in `unit`. A value that is neither a
+/// number nor an angle becomes 0.
 fn amount(value: Value, unit: Unit) -> f64 {
     match (value, unit) {
         (Value::Number(number), _) => number,

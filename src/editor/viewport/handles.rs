@@ -21,8 +21,8 @@ use crate::{
 /// smaller tolerance would need numbers with more digits in the text.
 pub const TOLERANCE: f64 = 0.5;
 
-/// Message about a drag that would need numbers too large for the scene, or so large that an `f64`
-/// has too few digits to place the handle.
+/// Message about a drag that is refused because its numbers would be too large for the scene, or
+/// for `f64` to place the handle accurately.
 pub const TOO_FAR: &str = "that is too far away";
 
 /// Name of a handle, and its position in space. The position is `None` if the eye cannot see the
@@ -116,9 +116,9 @@ pub fn handles(shape: &Shape, projection: &Projection, towards: DVec3) -> Vec<Ha
     }
 }
 
-/// Returns the direction from an object's centre in which its handles are placed while the pointer
-/// drags `handle` to the point `to` of the picture. Only the radius handle of a sphere depends on
-/// this direction: the handle stays on the pointer's side of the centre.
+/// Returns the direction from an object's centre in which its radius handle is drawn while the
+/// pointer drags `handle` to the point `to` of the picture. The handle stays on the pointer's side
+/// of the centre. Only spheres have such a handle; for other shapes, the direction has no effect.
 pub fn side_held(shape: &Shape, handle: &str, to: DVec2, projection: &Projection) -> DVec3 {
     match shape {
         Shape::Sphere(_) if handle == SPHERE.radius.name => projection.ray(to),
@@ -262,9 +262,9 @@ pub fn moved(
     let (field, axis) = handle.split_once('_').unwrap_or((handle, handle));
     let along = Along::named(axis).or(along);
     let by = moved_point(at, to, along, projection)? - at;
-    // The handle `center` of a box or triangle moves the corners or vertices instead of a field
-    // `center`. The `center` of a box is a rounded value, and a triangle given by vertices has no
-    // such field.
+    // The handle `center` of a box or triangle moves the corners or vertices, not a field `center`.
+    // A triangle given by vertices has no such field, and the `center` of a box is only a rounded
+    // mean of its corners.
     let fields = match shape {
         Shape::Box(_) if field == CENTER => &[BOX.min.name, BOX.max.name][..],
         Shape::Triangle(_) if field == CENTER => &CORNERS,
@@ -349,10 +349,10 @@ fn radius(sphere: &Sphere, to: DVec2, projection: &Projection) -> Result<f64, St
     }
 }
 
-/// Returns the normal of a triangle whose tip, as drawn in the picture, appears at the point `to`.
-/// If the tips of two normals do, returns the normal on the same side of the view ray as the
-/// current one: towards the eye, or away from it. If none does, returns the normal whose tip
-/// appears nearest.
+/// Turns the normal of a triangle so that the tip of its arrow in the picture appears at the point
+/// `to`. If there are two such normals, returns the one on the same side of the view ray as the
+/// current normal: towards the eye, or away from it. If there is no such normal, returns the one
+/// whose tip appears nearest to `to`.
 fn turned_normal(triangle: &CenteredTriangle, to: DVec2, projection: &Projection) -> DVec3 {
     let reach = triangle.sides.z;
     let (ray, _) = unit(projection.ray(to));

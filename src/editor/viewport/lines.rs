@@ -4,8 +4,8 @@ use glam::{DVec2, DVec3};
 
 use crate::projection::Projection;
 
-/// Minimum depth of the visible part of a line, as a fraction of the greatest distance, along any
-/// axis, between the eye and the line's points. A part with less depth is cut off, since a point of
+/// Minimum depth of the visible part of a line, relative to the largest coordinate difference
+/// between the eye and a point of the line. A part with less depth is cut off, since a point of
 /// depth 0 would appear infinitely far away. Any small positive number would do; with a much larger
 /// one, the cut would become visible.
 const NEAREST: f64 = 1e-6;
@@ -41,8 +41,8 @@ impl Projection {
     }
 
     /// Joins segments in the picture to polygonal lines. A segment that starts where the previous
-    /// one ends continues its line. Parts that are more than 128 times the picture's size outside
-    /// of it are cut off, since browsers cannot draw them exactly.
+    /// one ends continues its line. Parts that are farther outside of the picture than 128 times
+    /// its width or height are cut off, since browsers cannot draw them exactly.
     pub fn joined(&self, segments: impl IntoIterator<Item = [DVec2; 2]>) -> Vec<Polyline> {
         let mut lines: Vec<Polyline> = Vec::new();
         let segments = segments.into_iter();

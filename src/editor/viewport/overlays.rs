@@ -21,15 +21,15 @@ use crate::{
 const TEST_DISTANCE: f64 = 2.0;
 
 /// Maximum number of points per segment of a checkerboard's outline at which a ray tests whether an
-/// object hides the outline. It bounds the time for one segment. With points at a distance of
-/// [`TEST_DISTANCE`], it suffices for segments of 2000 pixels; on longer ones, the points are
+/// object hides the outline. The limit bounds the time for one segment. Segments of up to 2000
+/// pixels are tested at points that are [`TEST_DISTANCE`] apart. On longer segments, the points are
 /// farther apart.
 const MOST_TESTS: f64 = 1000.0;
 
-/// Number of tested points, for all checkerboards of a picture together, after which no further
-/// outline is tested. It bounds the time. The remaining outlines are drawn as if nothing hid them.
-/// It suffices for the four sides of at least two boards, since a side has at most [`MOST_TESTS`]
-/// points.
+/// Number of points to test on the outlines of all checkerboards of a picture together, after which
+/// the remaining outlines are drawn as if nothing hid them. The limit bounds the time of an answer.
+/// Each side of an outline has at most [`MOST_TESTS`] points, so the four sides of two boards are
+/// always tested.
 const MOST_TESTS_IN_ALL: f64 = 8000.0;
 
 /// Maximum number of objects whose outlines are drawn over a picture. Nobody can tell more outlines
@@ -118,8 +118,8 @@ pub fn overlays(scene: &Scene, which: &ShownObjects) -> Overlays {
     });
     let cut = |depth: f64| {
         let boards = objects().filter_map(|(_, object)| object.shape.checkerboard());
-        // At depth 0, in the plane through the eye, nothing is visible. The slope is then infinite,
-        // and no line is returned.
+        // At depth 0, the plane is parallel to the view plane and contains the eye, so it is not
+        // visible. The division then yields infinity or NaN, for which `level` returns no line.
         let lines = boards
             .filter_map(|&Checkerboard { y, .. }| projection.level((y - camera.eye.y) / depth));
         lines.take(MOST_OBJECTS).collect()

@@ -12,14 +12,14 @@ use crate::{
     tracer::{Hit, World, ray},
 };
 
-/// Maximum number of samples of a pixel that [`samples`] returns; further ones are left out. It
-/// limits the length of the answer to the editor. A drawing of one pixel cannot show 65 536 points
-/// separately, so nobody misses further ones.
+/// Maximum number of samples of a pixel that [`samples`] returns, to limit the length of the answer
+/// to the editor. Any further samples are left out: a drawing of one pixel cannot show more than 65
+/// 536 points separately.
 pub const MOST_SAMPLES: u64 = 1 << 16;
 
-/// Maximum number of samples of a pixel for which [`samples`] renders the pixel. If the pixel has
-/// more samples, an error is returned, since rendering them all would delay the answer too long.
-/// The colour of the pixel needs all samples, also those that are not returned.
+/// Maximum number of samples per pixel with which [`samples`] renders a pixel. For more samples, an
+/// error is returned, since the answer would be delayed too long. All samples are rendered, even
+/// those that are not returned, because the pixel's colour depends on them.
 const MOST_TRACED: u64 = 1 << 20;
 
 /// Returns the object that is visible at the point `point` of the picture, as a hit of the view ray
