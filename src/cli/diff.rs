@@ -216,10 +216,11 @@ struct DiffReport {
     sizes: [[u32; 2]; 2],
     comparison: Result<Comparison, SizesDiffer>,
     tolerance: f64,
-    /// Verdict on picture A: whether it is right and, if not, by which mistakes it became wrong.
-    /// `None` if B is not a scene.
+    /// Verdict on picture A: whether it is right and, if not, which mistakes explain the
+    /// differences. `None` if B is not a scene.
     verdict: Option<Verdict>,
-    /// Whether the tolerance alone decides. Of two pictures, there is no verdict that could.
+    /// Whether the tolerance alone decides the exit status. Otherwise the verdict decides, if there
+    /// is one.
     is_strict: bool,
 }
 
@@ -334,7 +335,8 @@ impl DiffReport {
     }
 }
 
-/// Returns the fields of the JSON output: the names of A and B, and the `figures` about them.
+/// Returns the fields of the JSON output: the names of A and B, and then `figures`, the results of
+/// the comparison.
 pub fn json([a, b]: [String; 2], figures: Map<String, Value>) -> Map<String, Value> {
     let names = [("a", json!(a)), ("b", json!(b))];
     let names = names.map(|(name, value)| (name.to_owned(), value));

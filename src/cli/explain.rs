@@ -83,7 +83,8 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
         .rsplit_once('.')
         .filter(|(block, axis)| schema::block(block).is_none() && matches!(*axis, "x" | "y" | "z"));
     let asked = of_vector.map_or(trimmed, |_| "ball.x");
-    // A shell needs quotes around `vanishing point`, so `vanishing_point` is the same.
+    // In a shell, `vanishing point` must be quoted, so it may also be written as `vanishing_point`
+    // or `vanishing-point`.
     let spaced = asked.replace(['_', '-'], " ");
     let is_asked = |name: &str| {
         [asked, &spaced]
@@ -388,7 +389,8 @@ mod tests {
                 assert_eq!(page(&word).unwrap(), page(parts).unwrap(), "{word}");
             }
         }
-        // One word never prints the whole section about objects.
+        // These words are explained in sections about several subjects. Only the lines about the
+        // word are printed.
         for word in ["window", "horizon", "wall", "mesh", "t", "pixel", "bound"] {
             assert!(page(word).unwrap().lines().count() < 10, "{word}");
         }

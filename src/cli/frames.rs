@@ -29,8 +29,8 @@ pub struct FramePattern {
 }
 
 impl FramePattern {
-    /// Parses the argument of `-o`. It has `%d` or, for example, `%03d` once; `%%` in it is a
-    /// percent sign.
+    /// Parses the argument of `-o`. It must contain exactly one place for a number, written as `%d`
+    /// or, for example, `%03d`. A percent sign is written as `%%`.
     pub fn of(output: Option<&Path>) -> Result<Self, Trouble> {
         let named = output.filter(|path| !input::is_standard(path));
         let parsed = match named.map(|path| (path.to_str(), shown(path))) {

@@ -176,13 +176,13 @@ impl SceneInput {
     /// last one.
     pub fn steps(&self, sweep: &Sweep) -> Result<Vec<SweepStep>, Trouble> {
         let [first, last] = sweep.ends().map(|set| self.with_set(&set));
-        // The later scenes mostly have the same warnings as the first one.
+        // The warnings of the last scene are not printed, since they are mostly those of the first.
         first.scene()?;
         last.scene_without_warnings()?;
         sweep.steps(&self.sources)
     }
 
-    /// Returns the input with one more `--set` argument, which is that of a sweep.
+    /// Returns the input with one more `--set` argument, which a sweep has made.
     pub fn with_set(&self, set: &str) -> Self {
         let mut sources = self.sources.clone();
         let name = format!("{}, --sweep", sources.file.name());
@@ -195,8 +195,9 @@ impl SceneInput {
         Report::new(&self.sources, output::style()).human(&reading.diagnostics)
     }
 
-    /// Returns what a picture file stores about the scene. `crop` is the part that is rendered;
-    /// `None` if all of the picture with the area `whole` is.
+    /// Returns what a picture file stores about the scene. `crop` is the rendered part of the
+    /// picture, or `None` if the whole picture was rendered. `whole` is the area of the whole
+    /// picture.
     pub fn recipe(&self, crop: Option<Area>, whole: Area) -> Recipe {
         Recipe {
             scene: self.sources.file.text().to_owned(),

@@ -27,9 +27,9 @@ struct Flags {
     then: OnceLock<Box<dyn Fn() + Send + Sync>>,
 }
 
-/// Time after the first Ctrl-C during which the command can clean up. Another Ctrl-C after it ends
-/// the process at once. Removing a temporary file and stopping threads take far less than two
-/// seconds.
+/// Time that a command has to clean up after the first Ctrl-C. When this time is over, another
+/// Ctrl-C ends the process at once. Removing a temporary file and stopping threads take far less
+/// than two seconds.
 const GRACE: Duration = Duration::from_secs(2);
 
 impl Interrupt {
@@ -79,8 +79,8 @@ impl Interrupt {
         self.0.pressed.load(Ordering::SeqCst)
     }
 
-    /// Returns [`Trouble::Interrupted`] if Ctrl-C was pressed, since it then caused the error.
-    /// Otherwise, returns `trouble`.
+    /// Returns the error to report for a failed command: [`Trouble::Interrupted`] if Ctrl-C was
+    /// pressed, since Ctrl-C is then the cause of the failure, and otherwise `trouble`.
     pub(super) fn or(&self, trouble: Trouble) -> Trouble {
         if self.pressed() {
             Trouble::Interrupted

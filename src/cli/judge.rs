@@ -13,7 +13,7 @@ use crate::{
 ///
 /// # Errors
 ///
-/// The picture cannot be decoded; the message says why.
+/// Returns a message that says why if the picture cannot be decoded.
 pub fn picture(bytes: &[u8], large: &LargeArgs) -> Result<Picture, String> {
     film::read_picture_up_to(bytes, large.decoded_limit()).map_err(|error| match error {
         Unreadable::Large { .. } if !large.large => format!("{error}: `--large` reads it"),
@@ -27,8 +27,9 @@ pub fn picture(bytes: &[u8], large: &LargeArgs) -> Result<Picture, String> {
 ///
 /// # Errors
 ///
-/// Neither the crop nor the whole scene has the picture's size, or the crop lies outside of the
-/// scene. The message is the end of a sentence that begins with the picture's name.
+/// Returns a message if neither a crop nor the whole scene has the picture's size, or if the crop
+/// lies outside of the scene. The message is the end of a sentence that begins with the picture's
+/// name.
 pub fn part(picture: &Picture, scene: &Scene, named: Option<Area>) -> Result<Area, String> {
     let [width, height] = [picture.film.width(), picture.film.height()];
     let whole = Area::whole(scene.image.width, scene.image.height);

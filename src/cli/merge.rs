@@ -1,4 +1,5 @@
-//! `merge`: puts the parts of one picture together to the file that a single render writes.
+//! `merge`: combines the parts of a picture into one file, which equals the file that a single
+//! render writes.
 
 use std::{
     fs::File,
@@ -20,8 +21,8 @@ use crate::{
     film::{self, FileRows, Film, Part, Pixel, Recipe, SIGNATURE},
 };
 
-/// Number of rows that are put together at a time. With more rows, a wide picture would need more
-/// memory; with fewer, the memory that is available would be asked for more often.
+/// Number of rows that are combined at a time. With more rows, a wide picture would need more
+/// memory; with fewer, the bands would be allocated and written more often.
 const ROWS: u32 = 64;
 
 /// The file of a part.
@@ -29,7 +30,8 @@ struct PartFile {
     path: PathBuf,
     format: FileFormat,
     part: Part,
-    /// The scene and its overrides; `None` if they are too long to be stored, or in an EXR file.
+    /// The scene and its overrides. `None` if the file is an EXR file, or if the scene was too long
+    /// to be stored in the PNG.
     recipe: Option<Recipe>,
 }
 
@@ -116,7 +118,8 @@ impl PartFile {
         file.rewind()?;
         let place = film::read_exr_place(BufReader::new(file))
             .map_err(|_| io::Error::other("it is neither a PNG nor an EXR file of a part"))?;
-        // A single shard of one is the whole picture.
+        // A file that shows the whole picture is accepted, too: it is the only shard of one
+        // (`--shard 1/1`). Without a digest, however, the file is not from Pinhole.
         let Some(digest) = place.digest else {
             let message = "it is no part of a picture that Pinhole rendered";
             return Err(io::Error::other(message));
@@ -193,8 +196,8 @@ fn check_overlaps(parts: &[PartFile]) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Returns an area of the whole picture that no part has, the topmost; `None` if there is none. The
-/// parts lie in the picture and do not overlap.
+/// Returns the topmost area of the whole picture that is missing from all parts, or `None` if no
+/// area is missing. The parts must lie in the picture and not overlap.
 fn gap(parts: &[PartFile], whole: Area) -> Option<Area> {
     let covered: u64 = parts.iter().map(|part| part.part.area.pixels()).sum();
     if covered == whole.pixels() {
@@ -267,8 +270,8 @@ impl<'a, P: Pixel> MergedRows<'a, P> {
         }
     }
 
-    /// Returns the next rows. Returns `None` after the last row, and an error if a part cannot be
-    /// read, which is also stored in `failed`.
+    /// Returns the next rows, or `None` after the last row. If a part cannot be read, returns an
+    /// error, and stores its message in `failed`.
     fn band(&mut self, failed: &mut Option<Trouble>) -> Option<io::Result<Film<P>>> {
         let rows = ROWS.min(self.whole.height - self.y);
         if rows == 0 {

@@ -180,7 +180,7 @@ fn status_of(done: Result<Status, Trouble>) -> Status {
     }
 }
 
-/// Why a command ended early.
+/// Reason why a command ended early.
 #[derive(Debug, thiserror::Error)]
 enum Trouble {
     /// An error, with a message for people.

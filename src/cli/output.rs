@@ -121,8 +121,8 @@ pub fn wrapped(text: &str, width: usize) -> String {
 }
 
 /// Returns the offset at which the last column of a table's row starts. A column starts after at
-/// least two spaces. Columns that start after the offset `most` are ignored. If no column is left,
-/// returns 2, or `most` if that is less.
+/// least two spaces, and at `most` letters or less from the start of the row. If there is no such
+/// column, returns 2, or `most` if `most` is less than 2.
 fn last_column(line: &str, most: usize) -> usize {
     let letters: Vec<char> = line.chars().take(most + 1).collect();
     let starts = letters.windows(3).enumerate();

@@ -56,8 +56,8 @@ fn with_progress<T>(
     progress::rendering(expected, None, cancel, |control| work(&sampling, control))
 }
 
-/// Error bound of a pixel's mean, in linear light, above which the user gets a note that the pixel
-/// is known less well than usual. Usual bounds are below 1e-9, and an error of 1e-6 is still
+/// Error bound of a pixel's mean, in linear light, above which a note tells the user that the pixel
+/// is less accurate than usual. Usual bounds are below 1e-9, and an error of 1e-6 is still
 /// invisible. With a much larger limit, a visible error could go without a note; with a smaller
 /// one, there would be more notes about invisible errors.
 const VAGUE: f32 = 1e-6;
@@ -115,7 +115,7 @@ impl Certificate {
         };
         let bound = numbers::at_most(f64::from(worst));
         let mean = if worst == 0.0 {
-            // The bound is 0 only if every pixel has a single colour, so that nothing is averaged.
+            // If the largest bound is 0, nothing was averaged: each pixel has only one colour.
             "its pixel's only colour".to_owned()
         } else {
             format!("within {bound} of its true mean")
@@ -342,7 +342,8 @@ impl PictureOutput {
 /// The pictures of a part's bands, or the error that ended the render.
 type Bands<'a, P> = dyn Iterator<Item = io::Result<Film<P>>> + 'a;
 
-/// A stream as a destination for a format that writes its bytes in order.
+/// Adapter for a stream that cannot seek. It makes the stream a [`Sink`], which requires the
+/// trait `Seek`. Only formats that write their bytes in order can be written to it.
 struct Unseekable<'a>(&'a mut dyn io::Write);
 
 impl io::Write for Unseekable<'_> {

@@ -65,7 +65,7 @@ fn render(
     Ok(())
 }
 
-/// Returns the part of the picture that is to be rendered; `None` if all of it is.
+/// Returns the part of the picture to render, or `None` for the whole picture.
 fn crop(args: &RenderArgs, input: &SceneInput, whole: Area) -> Result<Option<Area>, Trouble> {
     if let Some(shard) = args.shard {
         let band = shard.band(whole).ok_or_else(|| {

@@ -5,7 +5,7 @@ use std::{fmt, str::FromStr};
 
 use crate::area::Area;
 
-/// One of several bands of rows.
+/// One of the bands of rows into which a picture is divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     /// Number of the band, from 1.

@@ -78,8 +78,8 @@ impl Screen {
         output::to_people(text);
     }
 
-    /// Returns how many columns and rows of pixels of the picture `whole` are shown as one dot,
-    /// i.e. half a character cell. Returns `None` if no pictures are shown.
+    /// Returns the size of the squares, in pixels of the picture `whole`, that are each shown as
+    /// one dot, i.e. half a character cell. Returns `None` if no pictures are shown.
     pub fn side(&self, whole: Area) -> Option<u32> {
         self.shown.as_ref()?;
         let (columns, rows) = size();
@@ -206,8 +206,8 @@ fn scale(width: usize, height: usize, columns: usize, rows: usize) -> f64 {
     (width as f64 / columns as f64).max(height as f64 / (2 * rows) as f64)
 }
 
-/// Returns the range of pixels in part `index`, if `pixels` pixels are divided into `parts` about
-/// equal parts. The range contains at least one pixel.
+/// Divides a range of `pixels` pixels into `parts` parts of about equal size, and returns the part
+/// with the index `index`. The part contains at least one pixel.
 fn share(index: usize, parts: usize, pixels: usize) -> std::ops::Range<usize> {
     let start = (index * pixels / parts).min(pixels - 1);
     let end = ((index + 1) * pixels / parts).max(start + 1);

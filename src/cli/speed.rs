@@ -135,8 +135,8 @@ fn request(args: &ReportArgs) -> Request {
     }
 }
 
-/// Returns the errors whose cost is reported: 1/256, then those that the user asked for, without
-/// duplicates.
+/// Returns the errors for which the report says how many samples and how much time they need:
+/// 1/256, then those that the user asked for, without duplicates.
 fn errors(asked: &[f64]) -> Vec<f64> {
     let mut errors = vec![1.0 / 256.0];
     for &error in asked {

@@ -91,13 +91,14 @@ impl Sweep {
         [&self.from, &self.to].map(|value| format!("{}={value}", self.target))
     }
 
-    /// Returns the scenes of the sweep. Their values are computed by the scene language: a `let`
-    /// for each is added to the end of the scene's text.
+    /// Returns the scenes of the sweep, with values in equal steps from the first to the last one.
+    /// The scene language computes these values: for each of them, a `let` is added to the end of
+    /// the text.
     ///
     /// # Errors
     ///
-    /// There is nothing between the first and the last value, for example because they are words or
-    /// colours.
+    /// Returns an error if there are no values between the first and the last one, for example
+    /// because these are words or colours.
     pub fn steps(&self, sources: &Sources) -> Result<Vec<SweepStep>, Trouble> {
         let Self {
             from, to, count, ..

@@ -154,12 +154,12 @@ fn render_and_write(
     Ok(done)
 }
 
-/// Time that a render may take before coarse pictures are shown meanwhile. Faster renders need no
-/// coarse picture first. The value is a guess at when a user gets impatient.
+/// Time after which a render that is not finished yet is accompanied by coarse pictures. A faster
+/// render needs none. The value is a guess at when a user gets impatient.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// Renders the scene. If this takes longer than [`PATIENCE`], shows coarse pictures in the terminal
-/// meanwhile, which become finer. The first one has squares of `side` pixels.
+/// Renders the scene. If this takes longer than [`PATIENCE`], another thread shows coarse pictures
+/// in the terminal, finer and finer ones. The first one consists of squares of `side` pixels.
 fn with_sketch(
     scene: &Scene,
     world: &World,

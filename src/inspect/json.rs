@@ -17,7 +17,7 @@ impl Inspection {
     ///
     /// # Errors
     ///
-    /// Fails if `out` cannot be written to.
+    /// Returns an error if `out` cannot be written to.
     pub fn write_json(&self, mut out: &mut dyn Write) -> io::Result<()> {
         for (key, value) in self.facts() {
             let sign = if key == "image" { '{' } else { ',' };

@@ -63,16 +63,17 @@ const POLL_INTERVAL: Duration = Duration::from_secs(1);
 /// The content of a file after a change.
 #[derive(Debug)]
 pub struct FileContent {
-    /// The file's bytes, or the error of reading them.
+    /// The file's bytes, or the error that occurred when they were read.
     pub bytes: io::Result<Vec<u8>>,
     /// Time at which the change of the file was noticed.
     pub since: Instant,
 }
 
 /// Watches a file until the returned slot is closed or dropped. The file's content is put into the
-/// slot at once and after each save, even if the text is unchanged. The function `read` reads the
-/// file. It must not block on a pipe, for example, because watching would stop; see
-/// [`files::open`].
+/// slot at once and after each save, even if the text is unchanged.
+///
+/// The function `read` reads the file. It must not wait, as it would on a pipe, because no changes
+/// are noticed meanwhile; [`files::open`] rejects pipes.
 ///
 /// # Errors
 ///
@@ -141,8 +142,8 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
             };
             match event {
                 Ok(event) if self.concerns(&event) => self.settle(),
-                // The file is checked once a second, and an event about another file must not delay
-                // this check.
+                // An event about another file does not lead to a check. But if such events keep
+                // arriving, the check that is due once a second must be made, too.
                 Ok(_) if since < next_look => continue,
                 _ => {
                     next_look = since + POLL_INTERVAL;
@@ -170,7 +171,8 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         };
         let written = AccessKind::Close(AccessMode::Write);
         match event.kind {
-            // Reading the file causes events, too, but changes nothing.
+            // Opening and reading a file cause events, too. They are ignored, except the event that
+            // a file was closed after writing.
             EventKind::Access(access) if access != written => false,
             _ if event.need_rescan() => true,
             _ => event.paths.iter().any(|path| {
@@ -258,9 +260,9 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
     }
 
     /// Reads the file's content, and returns it with the time, length and identity that the file
-    /// had before. If the file is missing or empty, reads it again until it has content, except at
-    /// the first reading. Gives up when no event has arrived for [`ABSENCE`], at the latest after
-    /// [`LONGEST_ABSENCE`].
+    /// had before. If the file is missing or empty, reads it again until it has content, but gives
+    /// up if no event arrives for [`ABSENCE`], or after [`LONGEST_ABSENCE`]. The very first reading
+    /// is not repeated.
     fn read_when_there(&self) -> (Option<Stamp>, io::Result<Vec<u8>>) {
         let start = Instant::now();
         let mut end = start + ABSENCE;
@@ -306,7 +308,8 @@ fn folder(path: &Path) -> PathBuf {
     fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
 }
 
-/// Data of a file that change when the file is saved: time, length and identity.
+/// Data of a file that change when the file is saved: modification time, length, and the identity
+/// that the file system gives the file.
 type Stamp = (SystemTime, u64, files::FileId);
 
 fn stamp(path: &Path) -> Option<Stamp> {

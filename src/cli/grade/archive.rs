@@ -118,7 +118,7 @@ impl Archive {
     ///
     /// # Errors
     ///
-    /// The file cannot be read; the message says why.
+    /// Returns a message that says why if the file cannot be read.
     pub fn open(path: &Path) -> Result<(Self, Vec<ArchiveEntry>), String> {
         let file = files::open_argument(path).map_err(|error| error.to_string())?;
         let left = Arc::new(AtomicU64::new(LIST_LIMIT));
@@ -165,7 +165,7 @@ impl Archive {
     ///
     /// # Errors
     ///
-    /// The entry is damaged or too large.
+    /// Returns a message if the entry is damaged or too large.
     pub fn read(&self, index: usize, budget: &UnpackBudget) -> Result<Vec<u8>, String> {
         /// Number of bytes that are unpacked before the limits are checked again. At most this many
         /// bytes are unpacked beyond a limit. It is an ordinary buffer size.

@@ -49,8 +49,8 @@ impl Class {
     ///
     /// # Errors
     ///
-    /// A folder or zip file on the command line cannot be read. A missing picture is no error at
-    /// this point; it is reported when the picture is judged.
+    /// Returns an error if a folder or zip file on the command line cannot be read. A missing
+    /// picture causes no error here; it is reported when the picture is judged.
     pub fn read(paths: &[PathBuf], own: &[&Path], chosen: Option<&Glob>) -> Result<Self, Trouble> {
         let mut class = Self::default();
         let mut rest: Vec<&PathBuf> = paths.iter().collect();
@@ -77,8 +77,8 @@ impl Class {
         Ok(class)
     }
 
-    /// Adds the students of a folder or zip file. If it contains folders of whole classes, their
-    /// students are added, too.
+    /// Adds the students of a folder or zip file. It may also contain folders of whole classes; the
+    /// students of these classes are added, too.
     fn add(&mut self, folder: Option<String>, mut tree: FileTree, chosen: Option<&Glob>) {
         for (name, inner) in tree.take_classes() {
             self.add(Some(name), inner, chosen);
@@ -292,7 +292,8 @@ fn with_companions(students: Vec<Student>) -> Vec<Student> {
 }
 
 /// Finds the arguments that a shell expanded from a pattern such as `class/*`. Returns each folder
-/// that contains a class, with the names of the arguments in it, which are students.
+/// that contains a class. The names of its students come with it: the arguments that lie in this
+/// folder.
 ///
 /// A folder contains a class if one of its arguments is a Git clone, has a name in Moodle's form,
 /// or is Gradescope's metadata file, or if two of its arguments contain pictures of the same name.

@@ -12,7 +12,7 @@ use crate::{
 /// Criterion to which a mistake in a picture belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Criterion {
-    /// Mistakes in the camera, or in the image plane's rectangle through which it sees the scene.
+    /// Mistakes in the camera, or in the part of the view plane that the picture shows.
     Camera,
     /// Mistakes in an object other than a checkerboard, given by the object's index in the scene.
     Object(usize),

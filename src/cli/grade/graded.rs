@@ -68,7 +68,7 @@ impl JudgedPicture {
     }
 
     /// Returns the number of independent samples per pixel that would cause as much noise as the
-    /// picture has. Returns `None` if the picture is wrong, since its mistakes would count as
+    /// picture has. Returns `None` if the picture is wrong, since its mistakes would be measured as
     /// noise.
     pub fn samples(&self) -> Option<f64> {
         self.verdict.samples.filter(|_| self.is_right())

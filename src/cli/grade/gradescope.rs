@@ -15,11 +15,13 @@ use crate::{
 };
 
 /// Returns the content of `results.json` for a student. Each criterion, such as the camera or an
-/// object, is a test in Gradescope. Without `--points`, each test counts one point. With it, the
-/// submission has points as a whole, and its tests only pass or fail: a mistake may cost more
-/// points than any share that its test could have, so the tests' points would not add up to the
-/// score. If the picture is wrong for unknown reasons, no scores are written, so that the teacher
-/// decides.
+/// object, is a test in Gradescope.
+///
+/// Without `--points`, each test is worth one point. With `--points`, only the whole submission has
+/// a score, and the tests pass or fail: one mistake may cost more points than its test has, so the
+/// points of the tests would not add up to the score.
+///
+/// If the picture is wrong for unknown reasons, no scores are written, so that the teacher decides.
 pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>) -> Value {
     let Ok(judged) = one.best() else {
         return whole(one, None, Vec::new());
@@ -135,8 +137,9 @@ fn is_reserved(name: &str) -> bool {
         let rest = stem.strip_prefix(word);
         rest.is_some_and(|rest| rest.len() == 1 && rest != "0")
     };
-    // Windows does not allow the first four names for files. The others are rejected, too, since
-    // `grade` writes files or a folder of these names beside the students' folders.
+    // Windows does not allow files with the names `con`, `prn`, `aux` and `nul`. `pictures`,
+    // `index` and `grade` are rejected, too, since `grade` writes files or a folder of these names
+    // beside the students' folders.
     matches!(
         &*stem,
         "con" | "prn" | "aux" | "nul" | "pictures" | "index" | "grade"

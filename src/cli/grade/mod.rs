@@ -154,8 +154,8 @@ fn worksheet_name(args: &GradeArgs) -> Option<String> {
     })
 }
 
-/// Prints the result in the format of `--format`. For the formats of Gradescope and Moodle, returns
-/// the files to write into the output folder instead, if there is one.
+/// Prints the results in the format of `--format`. If there is an output folder, results for
+/// Gradescope and Moodle are not printed, but returned as files to write into this folder.
 fn print_results(
     args: &GradeArgs,
     scene: &Scene,

@@ -42,7 +42,8 @@ const HEADINGS: [&str; 5] = [
 ///
 /// # Errors
 ///
-/// The worksheet cannot be read, lacks a column, or has a maximum grade below `total`.
+/// Returns an error if the worksheet cannot be read, lacks a column, or has a maximum grade below
+/// `total`.
 pub fn filled(
     path: &Path,
     columns: &[String],
@@ -134,7 +135,7 @@ pub fn filled(
             )));
         }
         let cells = row.iter().enumerate().map(|(at, cell)| match at {
-            // Without `--points`, there are no grades to fill in.
+            // Without `--points`, there are no grades to fill in, so the cell keeps its content.
             _ if at == grade && total.is_some() => {
                 one.score.map_or_else(String::new, short).into_bytes()
             }

@@ -197,7 +197,7 @@ fn verdict(one: &GradedStudent) -> String {
         .best()
         .is_ok_and(|judged| !judged.verdict.mistakes.is_empty());
     let line = if is_explained {
-        // The mistakes are listed below this line on the page, so the line leaves them out.
+        // The page lists the mistakes below this summary, so the summary does not repeat them.
         format!("{}{}", one.word(), one.note())
     } else {
         one.line()

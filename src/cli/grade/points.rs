@@ -15,7 +15,8 @@ use crate::{
 /// points is a short text, so the limit only keeps a wrong file from filling the memory.
 const LIMIT: u64 = 1 << 20;
 
-/// Key in the JSON object `mistakes` whose points apply to all mistakes without a key of their own.
+/// Key in the JSON object `mistakes`. Its value is the number of points for each mistake that has
+/// no key of its own.
 const OTHERS: &str = "*";
 
 /// A scheme of points, read from the file in `--points`.
@@ -32,12 +33,12 @@ pub struct PointScheme {
 }
 
 impl PointScheme {
-    /// Reads a scheme of points from a JSON file such as `{"total": 20, "object": 2, "mistakes":
-    /// {"roll_sign": 3, "*": 2}}`.
+    /// Reads a scheme of points from a JSON file such as
+    /// `{"total": 20, "object": 2, "mistakes": {"roll_sign": 3, "*": 2}}`.
     ///
     /// # Errors
     ///
-    /// The file has another form, or names an unknown mistake.
+    /// Returns an error if the file has another form, or names an unknown mistake.
     pub fn read(path: &Path) -> Result<Self, Trouble> {
         let bytes = files::read(path, LIMIT).map_err(|error| unreadable(path, &error))?;
         let value: Value =

@@ -51,7 +51,7 @@ pub struct SubmittedFile {
     /// CRC-32 checksum of the file, if it is in a zip file.
     pub sum: Option<u32>,
     pub content: ContentSource,
-    /// Whether the user named the file on the command line. Such a file is taken for a picture,
+    /// Whether the user named the file on the command line. Such a file is treated as a picture,
     /// whatever its name is.
     pub is_named: bool,
 }

@@ -149,8 +149,8 @@ pub fn csv(graded: &[GradedStudent]) -> String {
 
 const HEAD: &str = "file,verdict,rmse,samples_per_pixel,line,set,student,number,mistakes,explains,help,guesses,rest,limited,not_compared,equal_to,score\n";
 
-/// Quotes a text as a cell of a CSV file. If a spreadsheet would take the text for a formula, a `'`
-/// is put in front.
+/// Quotes a text as a cell of a CSV file. If a spreadsheet would interpret the text as a formula, a
+/// `'` is put before it.
 fn text_cell(text: &str) -> String {
     let guard = if text.starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠', '\t', '\r', '\n'])
     {

@@ -31,8 +31,8 @@ const MOST_FILES: usize = 200_000;
 /// less deeply.
 const DEEPEST: usize = 40;
 
-/// Maximum depth of folders that are recorded, so that empty folders are not lost. Two levels
-/// suffice: folders of classes, and the students' folders in them.
+/// Maximum depth at which folders are recorded in addition to their files, so that empty folders
+/// are not lost. Two levels suffice: folders of classes, and the students' folders in them.
 const NAMED: usize = 2;
 
 /// A file, with its path as a list: the names of the folders that contain it, then its own name.
@@ -57,7 +57,7 @@ impl FileTree {
     ///
     /// # Errors
     ///
-    /// The folder cannot be read, or has too many files.
+    /// Returns an error if the folder cannot be read, or has too many files.
     pub fn of_folder(path: &Path, own: &[&Path]) -> io::Result<Self> {
         let mut tree = Self::at(path);
         tree.walk(path, &[], own)?;
@@ -69,7 +69,7 @@ impl FileTree {
     ///
     /// # Errors
     ///
-    /// The folder cannot be read, or has too many files.
+    /// Returns an error if the folder cannot be read, or has too many files.
     pub fn of_some(path: &Path, names: &BTreeSet<&OsStr>, own: &[&Path]) -> io::Result<Self> {
         let mut tree = Self::at(path);
         let entries = fs::read_dir(or_here(path))?.collect::<io::Result<Vec<_>>>()?;
@@ -78,8 +78,8 @@ impl FileTree {
         Ok(tree)
     }
 
-    /// Lists a zip file. If everything in it is in one folder that has several entries and seems to
-    /// contain a class, lists the content of this folder.
+    /// Lists a zip file. A zip file may contain a single folder with everything else in it. If this
+    /// folder seems to contain a class, its content is listed, without the folder itself.
     pub fn of_zip(path: &Path) -> Result<Self, String> {
         let mut tree = Self::at(path);
         tree.unpack(path, &[])?;
@@ -329,8 +329,8 @@ pub fn is_zip(path: &Path) -> bool {
     ending.is_some_and(|ending| ending.eq_ignore_ascii_case("zip")) && path.is_file()
 }
 
-/// Returns whether a name is hidden, i.e. begins with a dot, or is that of a file that operating
-/// systems create.
+/// Returns whether a file or folder is skipped because of its name. Hidden names, which begin with
+/// a dot, are skipped, and so are those of files that operating systems create.
 fn is_passed_over(name: &str) -> bool {
     const NAMES: [&str; 3] = ["__MACOSX", "Thumbs.db", "desktop.ini"];
     name.starts_with('.') || NAMES.iter().any(|own| name.eq_ignore_ascii_case(own))
