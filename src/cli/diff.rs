@@ -382,7 +382,7 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
 }
 
 /// Lists the scene's objects, and says which of them are drawn right. If the scene has more than 12
-/// objects, only wrong ones are listed, at most 12, and the rest are counted.
+/// objects, lists at most 12 wrong ones, and only counts the others.
 fn objects(verdict: &Verdict) -> String {
     /// Maximum number of objects that are listed. If the scene has more, objects that are right are
     /// only counted. Chosen so that the list takes a few lines; any similar number works.

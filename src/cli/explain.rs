@@ -171,10 +171,10 @@ fn drawn(page: &str, width: usize, headings: Headings) -> String {
     let mut text = String::new();
     let mut paragraph = String::new();
     let mut is_scene = false;
-    // The empty line at the end closes the last paragraph.
     let mut rows: Vec<Vec<&str>> = Vec::new();
     let lines = page.lines().filter(|line| !line.starts_with("!["));
     let lines = lines.map(without_targets).collect::<Vec<_>>();
+    // An empty line is added, so that the last paragraph is closed, too.
     for line in lines.iter().map(String::as_str).chain([""]) {
         if !is_scene && line.starts_with('|') {
             rows.push(cells(line));

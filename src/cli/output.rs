@@ -102,8 +102,9 @@ pub fn answer(text: &str) -> Result<(), Trouble> {
     }
 }
 
-/// Wraps lines longer than `width` columns between words. If a line seems to be a table's row whose
-/// last column starts in the left half, its further lines are indented to this column.
+/// Wraps lines longer than `width` columns between words. If a line seems to be the row of a table,
+/// its continuation lines are indented to the row's last column, unless this column starts in the
+/// right half.
 pub fn wrapped(text: &str, width: usize) -> String {
     let broken = text.split('\n').map(|line| {
         let words = line.trim_start_matches(' ');
@@ -185,8 +186,8 @@ pub fn style() -> Style {
     }
 }
 
-/// Number of columns that are reserved at the left of a scene's lines in a report, for line numbers
-/// and the frame. The lines get the remaining columns of the terminal. With a smaller number, the
+/// Number of columns of the terminal in which a report shows line numbers and a frame, at the left
+/// of the scene's lines. The scene's lines get the remaining columns. With a smaller number, the
 /// terminal would wrap long lines.
 const FRAME: usize = 8;
 

@@ -28,8 +28,8 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     let output = PictureOutput::of(&args.scene, args.output.as_deref())?;
     let input = SceneInput::read(&args.scene, &args.overrides)?;
     let scene = input.scene();
-    // The output is checked before rendering, which may take hours. It is also checked if the scene
-    // has errors: an output that cannot be written leads to exit status 2, which takes precedence.
+    // The output is checked before rendering, which may take hours. It is checked even if the scene
+    // has errors: if the output cannot be written, too, the exit status is 2 rather than 1.
     output.check(&args.scene)?;
     render(args, &input, &scene?, &output, interrupt)?;
     Ok(Status::Done)

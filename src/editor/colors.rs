@@ -34,7 +34,8 @@ pub fn swatches(analysis: &Analysis<'_>) -> Vec<Swatch> {
         for field in &block.fields {
             let known = row.and_then(|row| row.field(field.name.text));
             if known.is_some_and(|known| known.takes == Type::Method) {
-                // The name of a sampling method is not a colour, even if a colour has this name.
+                // The name of a sampling method is not a colour, even if a colour has this name, so
+                // the field is skipped.
                 continue;
             }
             collect(analysis, &field.value, &mut swatches);

@@ -93,7 +93,8 @@ pub fn hints(analysis: &Analysis<'_>, within: Range<usize>) -> Vec<Hint> {
 /// Returns the result of a field's value if it is an expression rather than a literal.
 fn computed<'s>(analysis: &Analysis<'s>, block: &Block<'s>, field: &Field<'s>) -> Option<Value> {
     let row = schema::block(block.kind?.text)?.field(field.name.text)?;
-    // The name of a method is not a reference, even if a `let` has the same name.
+    // The name of a method is not a reference, even if a `let` has the same name. So it gets no
+    // hint.
     if row.takes == Type::Method || !is_computed(&field.value) {
         return None;
     }

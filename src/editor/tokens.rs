@@ -55,7 +55,7 @@ pub enum Role {
     Other,
 }
 
-/// Returns the span in the file from the byte `start` to before the byte `end`.
+/// Returns the span of the bytes `start..end` of the scene file.
 pub fn file(start: usize, end: usize) -> Span {
     Span::new(SourceId::File, start, end)
 }
