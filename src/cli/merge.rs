@@ -203,7 +203,8 @@ fn gap(parts: &[PartFile], whole: Area) -> Option<Area> {
     if covered == whole.pixels() {
         return None;
     }
-    // Between two neighbouring cuts, all rows are covered by the same parts.
+    // `cuts` contains the rows at which parts begin or end. All rows between two neighbouring cuts
+    // are covered by the same parts.
     let ends = |part: &PartFile| [part.part.area.y, part.part.area.y + part.part.area.height];
     let mut cuts: Vec<u32> = parts
         .iter()

@@ -16,7 +16,8 @@ pub struct SemanticToken {
     pub span: Span,
     /// Kind by which editors colour the token.
     pub kind: SemanticKind,
-    /// Whether the token defines a name, i.e. is the name after `let` or of a `for` index.
+    /// Whether the token defines a name, i.e. is the name of a `let` or a `for` index where it is
+    /// introduced.
     pub is_declaration: bool,
 }
 

@@ -110,8 +110,8 @@ fn code_actions(converter: Converter<'_>, analysis: &Analysis<'_>, params: &Valu
         let fixes = editor::fixes(analysis, converter.span(range));
         actions.extend(fixes.map(|(diagnostic, fix)| converter.action(fix, Some(diagnostic))));
     }
-    // The quick fixes at the cursor are complete. A fix of all diagnostics is added if several of
-    // them have safe fixes.
+    // If there are quick fixes at the cursor, and several diagnostics of the text have safe fixes,
+    // a fix of all diagnostics is offered, too.
     let all = analysis.diagnostics().iter();
     let has_safe = |it: &&Diagnostic| it.fixes.iter().any(Fix::is_safe);
     let is_more = !actions.is_empty() && all.filter(has_safe).count() > 1;

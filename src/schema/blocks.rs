@@ -30,8 +30,8 @@ pub struct BlockRow {
     pub fields: &'static [FieldRow],
     /// Groups of fields that express the same thing in different ways and exclude each other.
     pub choices: &'static [Choice],
-    /// Conditions that relate several fields, such as `near < far`, as formulas with the fields'
-    /// names.
+    /// Conditions that relate several fields: formulas such as `near < far`, or phrases that name
+    /// the fields.
     pub together: &'static [&'static str],
     /// Words that people write by mistake to set several fields at once, as in
     /// `resolution (640, 480)`. An element consists of such words, separated by spaces, and the
