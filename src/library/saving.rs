@@ -49,8 +49,12 @@ impl Picture {
                 let digest = own.or_else(|| self.coded.digest.clone());
                 film::write_exr(self.film(), part, whole, digest.as_deref(), out)
             }),
-            _ => {
-                let message = "a picture's file ends in .png or .exr";
+            ending => {
+                let message = match ending {
+                    Some("png") => "the crate was compiled without its feature `png`",
+                    Some("exr") => "the crate was compiled without its feature `exr`",
+                    _ => "a picture's file ends in .png or .exr",
+                };
                 Err(io::Error::new(io::ErrorKind::InvalidInput, message))
             }
         };

@@ -37,6 +37,16 @@ fn the_page_is_that_of_the_files() {
         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
         <title>Pinhole: a handout</title>\n<link rel=\"stylesheet\" href=\"handout.css\">\n</head>\n<body>\n<main>\n",
     );
+    let folder = fs::read_dir(path("")).unwrap();
+    let names = folder.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut pages: Vec<_> = names
+        .filter_map(|name| name.strip_suffix(".md").map(str::to_owned))
+        .filter(|name| name != "answers")
+        .collect();
+    pages.sort();
+    let mut expected = PAGES;
+    expected.sort();
+    assert_eq!(pages, expected, "files of the handout");
     for name in PAGES {
         let text = fs::read_to_string(path(&format!("{name}.md"))).unwrap();
         let events = Parser::new_ext(&text, Options::ENABLE_TABLES).map(|event| match event {

@@ -22,28 +22,36 @@ pub struct Mixture {
     pub edges: f64,
     /// Fraction of the picture's pixels that show only a checkerboard, in both of its colours.
     pub board: f64,
+    /// Whether all pixels were reached within the work limit. If not, both fractions may be too
+    /// small.
+    pub is_complete: bool,
 }
 
 impl Mixture {
     /// Counts the pixels that show more than one colour, in the picture of a scene.
     pub fn of(scene: &Scene) -> Self {
-        let edges = share_of_mixed(&World::by_surface(scene));
+        let (edges, reaches_edges) = share_of_mixed(&World::by_surface(scene));
         let is_board = |shape: &Shape| matches!(shape, Shape::Checkerboard(_));
         let has_board = scene.objects.iter().any(|object| is_board(&object.shape));
-        let board = if has_board {
-            // An edge between surfaces of the same colour is counted in `edges`, but not here. So
-            // the difference may be negative, and is then replaced by 0.
-            (share_of_mixed(&World::new(scene)) - edges).max(0.0)
+        let (both, reaches_board) = if has_board {
+            share_of_mixed(&World::new(scene))
         } else {
-            0.0
+            (edges, true)
         };
-        Self { edges, board }
+        Self {
+            edges,
+            // An edge between surfaces of the same colour is counted in `edges`, but not in `both`.
+            // So the difference may be negative, and is then replaced by 0.
+            board: (both - edges).max(0.0),
+            is_complete: reaches_edges && reaches_board,
+        }
     }
 }
 
 /// Returns the fraction of the picture's pixels that show several entries of the world's palette.
-/// An entry is a colour or, in a world made by [`World::by_surface`], a surface.
-fn share_of_mixed(world: &World) -> f64 {
+/// An entry is a colour or, in a world made by [`World::by_surface`], a surface. Also returns
+/// whether all pixels were reached within the work limit.
+fn share_of_mixed(world: &World) -> (f64, bool) {
     let whole = world.picture();
     let integrator = Integrator::for_values(world, |_| []).with_work_limit(MAX_WORK);
     let mut mixed: u64 = 0;
@@ -55,5 +63,6 @@ fn share_of_mixed(world: &World) -> f64 {
             mixed += u64::from(seen.count() > 1);
         });
     }
-    mixed as f64 / whole.pixels() as f64
+    let share = mixed as f64 / whole.pixels() as f64;
+    (share, integrator.work() <= MAX_WORK)
 }

@@ -19,8 +19,19 @@ pub fn reasons(measured: &Measurement) -> Vec<String> {
             percent(board)
         ),
     };
+    let [least, others] = if mixture.is_complete {
+        [
+            "",
+            "Every other pixel has one colour, which any method finds",
+        ]
+    } else {
+        [
+            "at least ",
+            "Counting them all would take too long. A pixel's only colour is found by any method",
+        ]
+    };
     let mut reasons = vec![format!(
-        "An edge crosses {edges} of the pixels{board}. Every other pixel has one colour, which any method finds with one sample: the error comes from the mixed pixels alone."
+        "An edge crosses {least}{edges} of the pixels{board}. {others} with one sample: the error comes from the mixed pixels alone."
     )];
     if measured.series.is_empty() || mixture.edges + mixture.board == 0.0 {
         return reasons;

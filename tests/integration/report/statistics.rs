@@ -314,6 +314,7 @@ fn measured(methods: &str) -> Measurement {
         mixture: Mixture {
             edges: 0.1,
             board: 0.2,
+            is_complete: true,
         },
         exact,
         series: sampled,

@@ -173,17 +173,22 @@ fn errors_of_segments_are_within_tight_bounds() {
                 let expected = integral(&exact, &ExactArc::new(&arc));
                 let error = (expected - NUMBER.exact(sum.value)).to_f64().value().abs();
                 let lines = [0, 1].map(|i| board.lines(&arc, i));
-                let is_cut =
-                    matches!(lines, [Some(a), Some(b)] if a.1 - a.0 + b.1 - b.0 <= MAX_LINES);
-                let mut found = found.borrow_mut();
-                let by = if board.square_of(&arc).is_some() {
-                    &mut found.one_square
-                } else if is_cut {
-                    &mut found.cut
-                } else {
-                    &mut found.halved
+                let span = match lines {
+                    [Some(a), Some(b)] => a.1 - a.0 + b.1 - b.0,
+                    _ => f64::INFINITY,
                 };
-                by.add(error, sum.bound, 1, (&board, &arc));
+                let mut found = found.borrow_mut();
+                let (by, roundings) = if board.square_of(&arc).is_some() {
+                    (&mut found.one_square, 1)
+                } else if span <= MAX_LINES {
+                    // Each line that crosses the arc contributes three roundings: those of its two
+                    // parameters, and that of the area of a piece. Each family has one line more
+                    // than the difference between the numbers of its first and its last.
+                    (&mut found.cut, 3 * (span as usize + 2))
+                } else {
+                    (&mut found.halved, 1)
+                };
+                by.add(error, sum.bound, roundings, (&board, &arc));
                 Ok(())
             },
         )

@@ -61,7 +61,7 @@ fn errors_of_batches_are_within_tight_bounds() {
                 [scene.image.width, scene.image.height] = SIZE;
                 let oracle = Oracle::new(&scene, USUAL_SIZES);
                 // A few pixels of each picture are enough.
-                for (pixel, sum) in sums(&World::new(&scene)).into_iter().step_by(61) {
+                for (pixel, sum) in sums(&World::new(&scene)).into_iter().step_by(17) {
                     let Some(sum) = sum else { continue };
                     let board = forms(&oracle, &pixel, eye, [0.25, square]);
                     let error = board.integral(&PIXEL) - NUMBER.exact(sum.value);
