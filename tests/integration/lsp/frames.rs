@@ -75,7 +75,8 @@ fn a_frame_has_the_pixels_of_a_render() {
         let (text, size) = match name {
             "exact" => (SCENE.replace("multi_jittered", "exact"), [83, 61]),
             "scattered" => (SCENE.replace("multi_jittered", "scatter"), [83, 61]),
-            // With 2000 samples per pixel, a slice of work is only a small part of the picture.
+            // The server computes a picture in slices of work. With 2000 samples per pixel, a slice
+            // is only a small part of the picture, so this case tests many slices.
             "many" => (SCENE.replace("per_pixel 9", "per_pixel 2000"), [83, 61]),
             "wide" => (sized("100_000", "2"), [100_000, 2]),
             _ => (SCENE.to_owned(), [83, 61]),

@@ -213,7 +213,7 @@ fn a_connection_without_the_token_is_closed() {
     ] {
         assert_eq!(studio.admitted(wrong).err(), Some(unknown), "{wrong}");
     }
-    // The host does not answer binary messages and close messages.
+    // The host admits no client that sends a binary message or a close message instead of a token.
     for wrong in [
         Message::binary(token.clone().into_bytes()),
         Message::Close(None),
