@@ -9,11 +9,10 @@ import { Refusal } from "./protocol";
 /** An open channel that sends texts to the engine. */
 interface Wire { send(text: string): void }
 
-/** Reason why there is no connection: it was lost, the host ended, or the worker failed; or the
- * host does not admit the page, because the page has no token (`keyless`), its token is not the
- * host's (`unknown`, or `restarted` if the token is an old one), or the token was sent too late or
- * twice. The page reconnects by itself after the first three reasons; otherwise the user must open
- * an address that the host has printed. */
+/** Reason why there is no connection. After the first three reasons, the page reconnects by itself:
+ * the connection was lost, the host ended, or the worker failed. After any other reason, the user
+ * must open an address that the host has printed: the page has no token, or its token is unknown,
+ * from an earlier run of the host, sent too late, or sent twice. */
 type Closed = "lost" | "ended" | "failed" | "keyless" | "unknown" | "restarted" | "late" | "twice";
 const TRIED_AGAIN: Closed[] = ["lost", "ended", "failed"];
 
@@ -33,8 +32,8 @@ const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
 const QUIET = 700;
 const HANGING = 1200; // wait for the reply, in ms, after which it is reported as late
 
-/** Prefix of the ids of the page's own requests. It tells their answers from those to the language
- * client, whose ids lack it. */
+/** Prefix of the ids of the page's own requests. The language client's requests have ids without
+ * it, so an answer's id tells to whom the answer belongs. */
 const OWN = "page-";
 const NO_CONNECTION = "This cannot be done without a connection.";
 

@@ -28,8 +28,8 @@ const freshId = () => `${Date.now()} ${Math.random()}`;
 let id = freshId();
 /** Whether a draft is stored under the key of this page. */
 let isKept = false;
-/** Drafts that the host, or without a host the browser, has not stored yet, by key. Null stands for
- * a draft that must be deleted. */
+/** Drafts that are not stored yet, by key. The host stores them or, if there is no host, the
+ * browser. Null stands for a draft that must be deleted. */
 const due = new Map<string, Draft | null>();
 /** Last draft that the user has restored. Its stored copy is kept until its text is saved to the
  * file, since Undo can remove the text from the editor. */

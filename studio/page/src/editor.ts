@@ -206,8 +206,8 @@ class SceneEditor {
   }
 
   /** Replaces the text by changing only what differs, so that the cursor stays. A pure insertion or
-   * deletion is moved to the start of its line if the result is the same. Otherwise an inserted
-   * block could be reported as the end of the block before it and a start of its own. */
+   * deletion is moved to the start of its line if the result is the same. An inserted block then
+   * covers its own lines, rather than the end of the block before it and its own beginning. */
   replace(content: string): void {
     const [old, text] = [this.text, withLf(content)];
     let end = 0;

@@ -27,7 +27,7 @@ const COARSE_PIXELS = 320 * 180;
  * show pictures of this size; a larger picture is requested at a lower resolution. */
 const MOST = { pixels: 16_000_000, side: 8192 };
 /** Pause in a drag, in ms, before finer pictures are requested. A moving pointer changes the text
- * once a refresh of the screen (17 ms at 60 Hz); with a shorter pause, finer pictures would be
+ * once per refresh of the screen (17 ms at 60 Hz). With a shorter pause, finer pictures would be
  * requested in the middle of a movement. */
 const HAND_RESTS = 20;
 /** Threshold for the rendering time of the last final picture, in ms. Below it, the next final

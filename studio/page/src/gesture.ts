@@ -36,8 +36,9 @@ function grouped(past: Extension = []): Extension {
   let last = 0;
   return [
     history({
-      // CodeMirror undoes two changes separately if the delay between them is longer than this. No
-      // delay is, so `joinToEvent` alone decides; but changes marked as isolated are undone alone.
+      // CodeMirror undoes two changes separately if the time between them is longer than this
+      // value. It is longer than any session, so `joinToEvent` alone decides. Only changes that are
+      // marked as isolated are always undone alone.
       newGroupDelay: 1e11,
       joinToEvent: (transaction, isAdjacent) => transaction.annotation(step) === "next"
         || (isAdjacent && Date.now() - last < TYPING_PAUSE),

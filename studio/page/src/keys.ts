@@ -32,8 +32,8 @@ function nameOf({ key, ctrlKey, metaKey, shiftKey }: KeyboardEvent): string {
   return `Control+${shiftKey ? "Shift+" : ""}${key.toLowerCase()}`;
 }
 
-/** Returns the element that a key operates. If a key selects a constraint of drags that is already
- * selected, returns the element `free` instead, which removes the constraint. */
+/** Returns the element that a key operates. If the key selects a constraint of drags that is
+ * selected already, returns the element `free` instead, which removes the constraint. */
 function controlOf(key: string): HTMLElement | undefined {
   const controls = [...document.querySelectorAll<HTMLElement>("[data-key]")];
   const found = controls.find(it => it.dataset["key"]?.split(" ").includes(key));

@@ -19,8 +19,8 @@ const SAMPLES_ZOOM = 4;
 const EDGE = 14;
 
 class OverlayLayer {
-  /** Overlays of the newest text. If the newest text has errors, the overlays of the last text
-   * without errors. */
+  /** Overlays of the newest text. While the newest text has errors, the overlays are those of the
+   * last text without errors. */
   data: Overlays | null = null;
   /** Whether `data` belongs to the current text. */
   isTrue = true;
