@@ -211,10 +211,10 @@ fn picture(scene: &Scene, way: Way) -> impl Fn() + use<> {
     }
 }
 
-/// Measures how much time exact decisions need, i.e. decisions about which surface a ray hits that
-/// no rounding makes wrong. Compares the rays per CPU second of three ways: the formulas of a
-/// textbook, which may decide wrongly; tracing each sample alone; and the command `render`. All
-/// three include the time to generate the sample points.
+/// Measures how much time it takes to decide without error which surface a ray hits. Compares the
+/// rays per CPU second of three ways: the formulas of a textbook, whose rounding errors cause some
+/// wrong decisions; tracing each sample alone; and the command `render`. All three include the time
+/// to generate the sample points.
 fn price() {
     const SECONDS: f64 = 2.0;
     let scene = sized(&example("figure_9_9"), 640, Method::MultiJittered, 64);

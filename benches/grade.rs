@@ -90,9 +90,9 @@ fn main() {
 }
 
 /// Returns sets of `count` mistakes that a renderer may make. For a `count` of 0, returns only the
-/// empty set; for 1, a set for each mistake. For 2, pairs each mistake of the objects with one
-/// mistake of each kind: camera, board, another object, picture. For 3, adds to each a mistake of
-/// the camera and one of another object.
+/// empty set; for 1, a set for each mistake. For 2, pairs each mistake of an object with one
+/// mistake each of the camera, the board, another object and the picture. For 3, combines each
+/// mistake of an object with one of the camera and one of another object.
 fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     let objects = OF_THE_OBJECTS.iter().enumerate();
     let sets = objects.flat_map(|(index, object)| {

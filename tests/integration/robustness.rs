@@ -67,8 +67,8 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     reading.scene.is_some()
 }
 
-/// Asserts that labels and edits lie in the text and between its characters, and that the edits of
-/// a fix do not overlap.
+/// Asserts that all labels and edits begin and end between characters of the text, and that the
+/// edits of a fix do not overlap.
 #[track_caller]
 fn assert_places(found: &[Diagnostic], sources: &Sources) {
     for diagnostic in found {

@@ -291,9 +291,9 @@ fn other_files_permissions_and_reads_trigger_no_picture() {
     let permissions = fs::metadata(watch.path("a.scn")).unwrap().permissions();
     fs::set_permissions(watch.path("a.scn"), permissions).unwrap();
     watch.folder.read("a.scn");
-    // A change would cause a new picture after a short time in which nothing else changes. The test
-    // waits longer than this time, so that a picture because of the reading or the permissions
-    // would be counted separately from the next save's picture.
+    // If the reading or the new permissions caused a picture, the program would render it after a
+    // short time without further changes. The test waits longer than this time, so that such a
+    // picture would be counted besides that of the next save.
     thread::sleep(Duration::from_millis(100));
     watch.becomes("blue");
     watch.wait("it says so", || watch.count("wrote") >= 2);

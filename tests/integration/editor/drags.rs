@@ -204,8 +204,8 @@ proptest! {
             ("radius", _) => {
                 // The pointer must lie on the sphere's silhouette, so a ray 3/4 pixel further in
                 // hits the sphere and a ray 3/4 pixel further out does not. The inner side is
-                // towards the projection of the centre; or away from it if the centre is behind the
-                // eye: then `side` is −1.
+                // towards the projection of the sphere's centre. If the centre is behind the eye,
+                // the inner side is in the opposite direction, and `side` is −1.
                 let CameraFacts { eye, w, .. } = camera_of(&after);
                 let side = (eye - place).dot(w).signum();
                 let inwards = (found - to).normalize_or_zero() * (0.75 * side);

@@ -202,7 +202,8 @@ fn a_pixel_takes_bounded_time() {
 }
 
 /// In each scene of `tests/exact`, the error bounds are at most 1e-9, and each pixel is the mean of
-/// its four quarters. If a scene has a comment `// crop`, only this part of the picture is tested.
+/// its four quarters. If a scene has a comment `// crop`, only the area that the comment gives is
+/// tested.
 #[test]
 fn hard_scene_files_are_known_within_1e_9() {
     for path in scenes("tests/exact") {

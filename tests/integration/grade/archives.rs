@@ -177,8 +177,7 @@ fn zip_bombs_are_rejected_at_the_stated_limits() {
         ("anna/a.png", &vec![0; (256 << 20) + 1]),
         ("ben/b.png", &right),
     ]);
-    // Changes the headers of the first entry, so that they claim falsely that it unpacks to ten
-    // bytes.
+    // Changes the headers of the first entry, so that they falsely announce ten bytes of contents.
     let length = ((256u32 << 20) + 1).to_le_bytes();
     let places: Vec<_> = (0..bomb.len() - 4)
         .filter(|&at| bomb[at..].starts_with(&length))

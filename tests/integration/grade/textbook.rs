@@ -113,8 +113,7 @@ pub enum Squares {
     /// The board is turned by 45 degrees. The number of a square is the sum of its coordinates on
     /// the turned board, each rounded down.
     Turned,
-    /// The number of a square is regarded as odd if at least one of the two coordinates, rounded
-    /// down, is odd.
+    /// A square gets the first colour only if both coordinates, rounded down, are even.
     BothEven,
     /// A square gets the second colour if sin(x) · sin(z) is negative, where x and z are the
     /// coordinates in units of the square's side.
@@ -134,8 +133,8 @@ pub enum Roots {
     TimesA,
 }
 
-/// Mistake of a student's program in the camera's axes or rays. The axes are u (right), v (up) and
-/// w (against the view direction).
+/// The way in which a student's program computes the camera's axes and rays. The axes are u
+/// (right), v (up) and w (against the view direction).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Axes {
     /// The axes and rays are correct.
@@ -157,8 +156,8 @@ pub enum Axes {
     LongRays,
     /// All rays have the same direction, −w, i.e. the view direction.
     Parallel,
-    /// All rays are parallel. The window is moved to `lookat` and enlarged, so that it appears to
-    /// the camera in the same size as before.
+    /// All rays are parallel. The window is moved from the view plane to `lookat` and enlarged, so
+    /// that it still fills the same field of view.
     ParallelFromLookat,
 }
 
@@ -358,9 +357,9 @@ impl Program {
         }
     }
 
-    /// Decodes a channel of a colour, from 0 to 1, to light. If the program encodes light correctly
-    /// or by a power, encoding gives the same channel again. The two wrong encodings,
-    /// [`Encoding::None`] and [`Encoding::Twice`], are not inverted, so their mistake is visible.
+    /// Decodes a channel of a colour, from 0 to 1, to light. If the program encodes light by a
+    /// power, uses the inverse power; otherwise, uses the curve of sRGB. So the mistakes
+    /// [`Encoding::None`] and [`Encoding::Twice`] change colours.
     fn decode(&self, part: f64) -> f64 {
         match self.encoding {
             Encoding::Power(power) => libm::pow(part, power),

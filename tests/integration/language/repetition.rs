@@ -186,7 +186,7 @@ fn fixes_in_repeated_objects_keep_their_index() {
 }
 
 /// A mistake after the `for` of a block does not affect the next block. A repeated checkerboard
-/// causes only one warning. The name of an index may be defined by a `let` after the block, also if
+/// causes only one warning. A `let` after a block can define the name of the block's index, also if
 /// values are overridden by `--set`.
 #[test]
 fn a_repetition_does_not_affect_the_text_around_it() {

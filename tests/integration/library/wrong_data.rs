@@ -1,5 +1,6 @@
-//! Tests of data that no text of a scene can produce, such as a program can pass to the library.
-//! All functions refuse such data; none makes a picture that looks right.
+//! Tests of data that no text of a scene can produce, but that another program can pass to the
+//! library. The library refuses such data, or reports an error; it never makes a picture that looks
+//! right.
 
 use std::io::Cursor;
 

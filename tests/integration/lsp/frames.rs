@@ -93,7 +93,8 @@ fn a_frame_has_the_pixels_of_a_render() {
 fn a_frame_of_an_outdated_text_is_refused() {
     let mut client = LocalClient::with(SCENE);
     let old = client.request("pinhole/frame", json!({}));
-    // This step of the server publishes the diagnostics but does not complete the frame.
+    // One step of the server publishes the diagnostics, but does not complete the frame. Then the
+    // text is changed.
     assert!(client.transport.step() && !client.has_answered(old));
     let changed = SCENE.replace("olive", "teal");
     client.change(2, json!({ "text": changed }));

@@ -121,8 +121,7 @@ fn a_slope_needs_a_factor_of_four_and_a_line_that_does_not_bend() {
     }
 }
 
-/// If the errors of the last point scatter so much that a bend may be due to noise, no bend is
-/// reported.
+/// A bend of the line is reported only if it is larger than the noise of the runs.
 #[test]
 fn noise_does_not_bend_a_line() {
     let run = |error| Run {
