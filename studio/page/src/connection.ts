@@ -190,7 +190,7 @@ const webSocket: Connector = (opened, receive, closed) => {
     ? (session.isFresh ? "unknown" : "restarted") : CLOSED[code] ?? "lost"));
 };
 
-/** Starts the engine in a web worker. Its first message opens the channel, a failure closes it. */
+/** Starts the engine in a web worker. Its first message opens the channel; a failure closes it. */
 const worker: Connector = (opened, receive, closed) => {
   const engine = new Worker(new URL("engine.js", location.href), { type: "module" });
   let isOpen = false;

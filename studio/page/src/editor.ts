@@ -159,8 +159,8 @@ class SceneEditor {
     return connection.request(method, { textDocument: { uri: this.uri }, ...params });
   }
 
-  /** Sends a request about the scene. Resolves to null if the request fails. The server, too,
-   * answers null if the text has errors. */
+  /** Sends a request about the scene. Resolves to null if the request fails. Some answers of
+   * the server are null, too, if the text has errors. */
   async ask<Result>(method: string, params: object): Promise<Result | null> {
     try {
       return await this.request<Result | null>(method, params);

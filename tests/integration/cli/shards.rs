@@ -22,7 +22,7 @@ fn parts_put_together_are_the_file_of_a_single_render() {
                 let mut parts = String::new();
                 for i in 1..=count {
                     render(&format!("-o {i}.{ending} --shard {i}/{count}"));
-                    // The parts are given in reverse order, since their order does not matter.
+                    // The parts are given in reverse order: their order must not matter.
                     parts = format!("{i}.{ending} {parts}");
                 }
                 folder.done(&format!("merge {parts} -o merged.{ending}"));

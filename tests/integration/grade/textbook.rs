@@ -123,7 +123,7 @@ pub enum Squares {
 /// Roots of the quadratic equation of a sphere, a·t² + b·t + c = 0, that a student's program tries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Roots {
-    /// Both roots, the nearer one first. This is correct.
+    /// Both roots. The nearest one that is visible is used, which is correct.
     Both,
     /// Only the nearer root.
     Lesser,
@@ -170,8 +170,8 @@ pub enum Sampling {
     Random,
     /// Each cell of a grid contains one sample at a random point.
     Jittered,
-    /// Sample i of n is at the point (i/n, φ₂(i)), where φ₂ is the radical inverse in base 2. The
-    /// points are equal in every pixel.
+    /// Sample i of n is at the point ((i + 1/2)/n, φ₂(i)), where φ₂ is the radical inverse in base
+    /// 2. The points are equal in every pixel.
     Hammersley,
     /// The samples of a pixel are at independent, uniformly distributed points, which are equal in
     /// every pixel. The number is the seed of the random numbers.
