@@ -1,5 +1,6 @@
-//! Measures how much time culling saves, i.e. testing samples only against the objects that may be
-//! seen in a pixel: `cargo bench --bench culling`. See README.md beside this file.
+//! Measures how much time culling saves: `cargo bench --bench culling`. Culling tests the samples
+//! of a pixel only against the objects that may be seen in the pixel. See README.md beside this
+//! file.
 #![allow(
     clippy::disallowed_methods,
     reason = "a benchmark reads and writes files of its own"
@@ -144,9 +145,9 @@ fn tiny(count: u32) -> String {
     text
 }
 
-/// Returns a scene of `count` overlapping triangles, each two hundred times as long as wide, in all
-/// orientations. Many of them cross even a small part of the picture, so culling may be up to three
-/// times as slow as tracing each sample alone.
+/// Returns a scene of `count` overlapping triangles with all orientations. Each is two hundred
+/// times as long as it is wide. Even a small part of the picture is crossed by many of them, so
+/// culling saves little work; it may take up to three times as long as tracing each sample alone.
 fn slivers(count: u32) -> String {
     let mut text = String::from("camera { eye (0, 0, 9) lookat (0, 0, 0) }\n");
     for i in 0..count {
@@ -210,9 +211,10 @@ fn picture(scene: &Scene, way: Way) -> impl Fn() + use<> {
     }
 }
 
-/// Measures what it costs to decide correctly which surface a ray hits. Compares the rays per CPU
-/// second of three ways: the formulas of a textbook, which are wrong in hard cases; tracing each
-/// sample alone; and `render`. All three include the time to generate the sample points.
+/// Measures how much time it takes to decide without error which surface a ray hits. Compares the
+/// rays per CPU second of three ways: the formulas of a textbook, whose rounding errors cause some
+/// wrong decisions; tracing each sample alone; and the command `render`. All three include the time
+/// to generate the sample points.
 fn price() {
     const SECONDS: f64 = 2.0;
     let scene = sized(&example("figure_9_9"), 640, Method::MultiJittered, 64);
@@ -266,9 +268,10 @@ fn textbook(scene: &Scene) -> impl Fn() {
     }
 }
 
-/// Measures the time of the exact picture of the example scene `figure_9_9`, with and without a far
-/// plane. Compares it with the time of tracing 1, 2 and 4 samples per pixel, each sample alone. The
-/// measurements alternate, so that other work on the machine affects all of them.
+/// Measures the time to compute the exact mean colour of each pixel (`render_exact`) in the example
+/// scene `figure_9_9`, with and without a far plane. Compares it with the time of tracing 1, 2 and
+/// 4 samples per pixel, each sample alone. The measurements alternate, so that other work on the
+/// machine affects all of them.
 fn exact() {
     const FEW: [u64; 3] = [1, 2, 4];
     println!("one thread; exact by the time of so many samples a pixel one by one, random");

@@ -102,10 +102,9 @@ fn main() {
     tokens_in_one_line();
 }
 
-/// Measures formatting a text with one block per line. Then measures the time from applying the
-/// formatter's edits to receiving the new diagnostics. The client applies an edit by sending it to
-/// the server as a change; the last edit is sent first, so that no change moves the positions of
-/// the others.
+/// Measures the time of formatting a text with one block per line. Then measures the time from
+/// sending all edits of the formatter as one change to reading the new diagnostics. The last edit
+/// in the text is listed first, so that no edit moves the positions of the others.
 fn formatted() {
     let text = spheres(OBJECTS, Layout::Lines);
     let mut server = Server::start(&text);

@@ -90,8 +90,9 @@ fn main() {
 }
 
 /// Returns sets of `count` mistakes that a renderer may make. For a `count` of 0, returns only the
-/// empty set; for 1, each mistake alone. For 2 and 3, combines each mistake of an object with
-/// mistakes of the camera, the board, the picture or another object.
+/// empty set; for 1, a set for each mistake. For 2, pairs each mistake of an object with one
+/// mistake each of the camera, the board, another object and the picture. For 3, combines each
+/// mistake of an object with one of the camera and one of another object.
 fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     let objects = OF_THE_OBJECTS.iter().enumerate();
     let sets = objects.flat_map(|(index, object)| {
@@ -112,8 +113,8 @@ fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
 }
 
 /// Returns the test pictures with sets of `count` mistakes, all of one size and sampling. A picture
-/// is left out if one of its mistakes is not visible, i.e. if the picture without this mistake
-/// differs by at most one 8-bit step, which rounding may explain.
+/// is left out if one of its mistakes is invisible. A mistake is invisible if the picture without
+/// it has nearly the same bytes: rounding alone can change a byte by one 8-bit step.
 fn cases(
     count: usize,
     [width, height]: [u32; 2],
@@ -133,9 +134,10 @@ fn cases(
         let names: Vec<_> = set.iter().map(|one| one.title()).collect();
         let whole = case(scene, &names);
         let picture = whole.picture();
-        // Largest difference of a byte that is regarded as invisible, in 8-bit steps: normally 1,
-        // which rounding may explain. It is 0 if the mistake `cut_off` is present: `cut_off`
-        // truncates bytes instead of rounding them, so it changes bytes by only a single step.
+        // Largest difference of a byte, in 8-bit steps, that leaves a mistake invisible. It is
+        // normally 1, since rounding can cause such a difference. In a picture with the mistake
+        // `cut_off` it is 0: `cut_off` truncates bytes instead of rounding them, which changes a
+        // byte by only one step.
         let least = u8::from(!names.contains(&"cut_off"));
         let is_seen = |left_out: usize| {
             let mut others = names.clone();

@@ -90,8 +90,8 @@ fn phases(scene: &Scene) {
     (0..RENDERS).for_each(|_| picture(&world, scene));
     let rendered = (cpu_seconds() - after.0) / f64::from(RENDERS);
     let start = cpu_seconds();
-    // For comparison, each sample is traced alone, without culling. The quadtree finds the objects
-    // that the sample's ray may hit.
+    // Renders the picture again without culling, for comparison: each sample is traced alone, and
+    // the quadtree finds the objects that its ray may hit.
     let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
     let whole = Area::whole(scene.image.width, scene.image.height);
     black_box(one_by_one(&world, &sampling, whole));

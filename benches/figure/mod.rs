@@ -1,4 +1,4 @@
-//! The scene of the assignment: figure 9.9 of the course.
+//! The example scene `figure_9_9`, which many tests and measurements use.
 
 use pinhole::{
     scene::{self, Count, Method, Scene},

@@ -120,9 +120,9 @@ fn culling_is_exact_for_generated_scenes() {
         let colors =
             scenes.map(|((_, scene), method)| compare(&scene, method, Count::PerPixel(24)));
         let colors: usize = colors.sum();
-        // A hundred pictures were compared. Pixels at edges mix colours, so the pictures have on
-        // average more than ten colours each, except if many numbers in the scenes have extreme
-        // magnitudes (`wild`).
+        // Ensures that the pictures are not nearly empty. Pixels at edges mix colours, so the
+        // hundred pictures together must have more than a thousand colours. This is not required if
+        // many numbers in the scenes have extreme magnitudes (`wild`).
         assert!(colors > 100 * 10 || wild > 5, "{wild}: {colors}");
     }
 }
@@ -132,9 +132,9 @@ sampled_and_exhaustive!(culling_is_exact_for_scenes_full_of_ties);
 fn culling_is_exact_for_scenes_full_of_ties(effort: Effort) {
     let scenes = generated(Numbers::MultiplesOf(0.5), [8, 8], 77);
     for (_, scene) in effort.first(60, scenes.take(300)) {
-        // The scenes' numbers are multiples of 1/2, and the samples form a regular grid. A single
-        // sample lies at the pixel's centre. Of four samples, each lies 1/4 pixel from the centre
-        // along both axes. So many samples hit edges exactly, and many rays lie in planes of
+        // All numbers in the scenes are multiples of 1/2, and the samples form a regular grid. A
+        // single sample lies at the pixel's centre; four samples lie 1/4 pixel from it along both
+        // axes. Therefore, many samples hit edges exactly, and many rays lie in the planes of
         // surfaces.
         for n in [1, 4, 16] {
             compare(&scene, Method::Regular, Count::PerPixel(n));
@@ -226,8 +226,8 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
     let mut scenes = generated(Numbers::Wild(0), [1, 1], 31);
     let mut methods = Method::SAMPLED.into_iter().cycle();
     // If few objects may be seen in a pixel, the tracer evaluates several samples of the pixel at
-    // once. Otherwise, it traces the samples one by one. Pictures of 160 × 120 pixels test the
-    // evaluation of several samples, because few objects may be seen in each of their small pixels.
+    // once; otherwise, it traces them one by one. The pictures of 160 × 120 pixels test the first
+    // way: their pixels are small, so few objects may be seen in each.
     for (roll, clips, size, counts) in [
         (0, "", "width 31 height 23", &[2, 4, 8, 9, 100][..]),
         (0, "near 5.5 far 8", "width 31 height 23", &[1, 3, 16]),

@@ -241,9 +241,9 @@ fn long_source_lines_are_cut_in_reports() {
 #[test]
 fn a_text_in_utf_16_is_one_mistake() {
     let marked = "\u{feff}sphere { center (0, 1, 0) }\n";
-    // Some programs write UTF-16 without a byte order mark. In UTF-16, one byte of each ASCII
-    // letter is 0, but not of the Cyrillic letters in the comment. The encoding must be recognized
-    // even so.
+    // Some programs write UTF-16 without a byte order mark. The encoding is then recognized by its
+    // zero bytes, one for each ASCII letter. Cyrillic letters, as in the comment of the scene
+    // below, have no zero byte, so its ASCII letters must suffice.
     let bare = "// Кубы\nsphere { center (0, 1, 0)  radius 2 }\n";
     let texts = [marked, bare, &marked[3..]].into_iter();
     let encoded = texts.flat_map(|text| {

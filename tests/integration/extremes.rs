@@ -52,8 +52,8 @@ fn assert_light(film: &Film, text: &str) {
 }
 
 /// Renders a scene with culling, sample by sample, and exactly, and compares the three pictures. If
-/// `is_decided` is false, the samples are not compared with the exact picture. This is for scenes
-/// whose squares may be too small, compared with their distance, for the tracer to tell which
+/// `is_decided` is false, the samples are not compared with the exact picture. A scene is not
+/// decided if it may have a distant checkerboard of such small squares that rounding decides which
 /// square a sample hits.
 fn render_in_each_way(scene: &Scene, text: &str, is_decided: bool) {
     let control = one_thread();
@@ -190,9 +190,9 @@ fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
     }
 }
 
-/// In an extremely wide view, rays near the picture's centre have tiny directions compared with all
-/// other rays. The tracer then compares the depths of surfaces by tiny numbers. It must still find
-/// the nearest surface.
+/// In an extremely wide view, the directions of rays near the picture's centre are tiny vectors
+/// compared with those at its edge. The depths of surfaces along these rays are computed from tiny
+/// numbers, and the nearest surface must still be found.
 #[test]
 fn the_nearest_surface_is_seen_at_the_centre_of_the_widest_views() {
     for view in [

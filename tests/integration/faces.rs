@@ -119,7 +119,8 @@ fn a_box_with_face_colours_looks_like_triangles_of_its_faces() {
     }
 }
 
-/// Asserts that each hit of a ray names its object by the object's index in the file.
+/// Asserts that hits refer to boxes by their indices in the file: each hit must have the colour of
+/// a face of its box, and the visible hit must belong to the object that the picture shows.
 fn objects_keep_their_places(scene: &Scene) {
     let world = World::new(scene);
     for (x, y) in [(18, 11), (3, 20), (30, 5)] {

@@ -22,8 +22,8 @@ fn drawn(example: &str, kind: Kind, sets: &[&str]) -> Result<String, String> {
     figure(&scene, kind, Choice::default())
 }
 
-/// Compares figures with stored files. The figures of the handout are stored beside its pages, and
-/// the others in `tests/figures`.
+/// Compares figures with stored files. Figures that the handout shows are stored beside its pages,
+/// and all other figures in `tests/figures`.
 #[test]
 fn figures_keep_their_bytes() {
     const VERTICES: [&str; 3] = [
@@ -164,7 +164,8 @@ fn a_figure_says_what_it_draws() {
 
 #[test]
 fn the_figure_of_the_camera_always_has_the_object_that_the_ray_meets() {
-    // The triangle comes after more objects than a figure has. One ball is behind the eye.
+    // The figure draws at most 60 objects, and the triangle is listed after more than 60. It must
+    // be drawn all the same, because the ray meets it. One sphere is behind the eye.
     let scene = read(
         "camera { eye (0, 1, 5) lookat (0, 1, 0) } sphere Behind { center (0, 1, 8) radius 0.5 }
 sphere for i < 100 { center (i / 20 - 2.5, 3, 0) radius 0.1 } triangle Sail { centroid (0, 1, 0) normal (0, 0, 1) color red }",

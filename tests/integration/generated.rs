@@ -133,9 +133,10 @@ impl Generator {
             ),
             3 | 4 => {
                 let [a, b] = [(); 2].map(|()| self.length(2.5));
-                // In the first two choices, one side is as long as the other two together, which is
-                // the limit of what a triangle may have. The last choice can have rational
-                // vertices, because its height above the side 3 is 2.
+                // In the first two cases, one side is as long as the other two together: a triangle
+                // without area, which is the limit of the allowed triangles. The vertices can have
+                // rational coordinates only in the last case, where the height above the side 3 is
+                // 2.
                 let sides = match self.random.below(4) {
                     0 => [a, b, a + b],
                     1 => [a, b, (a - b).abs()],

@@ -11,8 +11,8 @@ use pulldown_cmark::{Event, Options, Parser, Tag, html};
 
 use crate::snapshot::assert_file;
 
-/// Files of the handout in the order in which they should be read. The answers are for teachers and
-/// not among them.
+/// Files of the handout in the order in which they should be read. The file with the answers to the
+/// questions is left out, since it is for teachers only.
 const PAGES: [&str; 7] = [
     "README",
     "camera",

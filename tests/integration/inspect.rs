@@ -180,9 +180,10 @@ fn probe_works_far_outside_the_picture_and_with_extreme_lenses() {
         let depths: Vec<_> = probe.hits.iter().map(|(hit, ..)| hit.depth).collect();
         assert_eq!(depths, [4.5, 5.5], "{lens}");
         let json = json_of(&inspected(&text)).to_string();
-        // The output has four expected `null`s: the far distance, two vanishing points, and the
-        // name of the box. An infinite number would be a fifth one. The text from `seen` on is left
-        // out, because it contains another `null` if the box covers almost nothing of a pixel.
+        // JSON shows an infinite number as `null`. The output must have only the four `null`s for
+        // missing values: the far distance, two vanishing points, and the name of the box. The text
+        // from `seen` on is not searched, because it has a further `null` if the box covers almost
+        // nothing of a pixel.
         let (facts, _) = json.split_once("\"seen\"").unwrap();
         assert_eq!(facts.matches("null").count(), 4, "{lens}: {json}");
     }
@@ -315,7 +316,8 @@ fn inspect_lists_100_objects_and_summarizes_the_rest() {
         100
     );
     assert_eq!(json["rest"]["outside"], 1000);
-    // The numbers of the summary are equal to the sums over all objects.
+    // The summary of all objects after the hundredth must give the same counts as these objects
+    // themselves.
     let picture = "image { width 96 height 54 } camera { eye (0, 0, 9) lookat (0, 0, 0) } ";
     let ball =
         |z: &str| format!("sphere for i < 15, j < 10 {{ center (i - 5, j - 4, {z}) radius 0.3 }}");

@@ -140,8 +140,8 @@ fn swap_colors(scene: &mut Scene) {
     }
 }
 
-/// Asserts that the pictures of two scenes are equal, except that pixels are moved. For the width
-/// of the picture and the position of a pixel, `goes` returns the pixel's new position. Sampled
+/// Asserts that two scenes have the same pixels at different positions. `goes` returns the new
+/// position of a pixel; its arguments are the picture's width and the old position. Sampled
 /// pictures must have the same bits. Exact pictures must agree within their error bounds.
 #[track_caller]
 fn assert_pictures_agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32; 2]) -> [u32; 2]) {

@@ -1,8 +1,8 @@
 //! Tests that reading a text in parts yields the same tree, scene and diagnostics as reading it as
 //! a whole.
 //!
-//! If parts may have only one byte, a text is split at every brace. So even small texts have many
-//! parts.
+//! The program splits only long texts into parts of many bytes. With a part size of 1 byte, a text
+//! is split at every brace, so that even small texts have many parts.
 
 use std::sync::atomic::AtomicBool;
 

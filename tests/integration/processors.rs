@@ -29,8 +29,8 @@ const SCENES: [&str; 5] = [
     "inside_the_sphere",
 ];
 
-/// Environment variable for the copy of the test that runs in QEMU. It contains the path of the
-/// folder into which the copy writes pictures. The copy does nothing else.
+/// Name of the environment variable that tells the test binary that it runs in QEMU. Its value is
+/// the folder into which the binary then only writes its pictures, without comparing any.
 const FOLDER: &str = "PINHOLE_TEST_PICTURES";
 
 /// Compares the pictures with those that the same test binary draws in QEMU. One process draws all

@@ -87,8 +87,8 @@ impl From<Output> for Outcome {
     }
 }
 
-/// A temporary folder in which the program is run. The arguments of a command are given as one
-/// line.
+/// A temporary folder in which the program is run. The methods that run a command get its arguments
+/// as one line, which [`words`] splits.
 pub struct Folder(TempDir);
 
 impl Folder {

@@ -207,7 +207,8 @@ fn random_scene(random: &mut Random) -> (String, Scene) {
     }
 }
 
-/// Only kinds of objects that random scenes contain are compared with samples.
+/// The tests below compare exact pictures with samples only for the kinds of objects that random
+/// scenes contain, so every kind must occur in them.
 #[test]
 fn every_kind_of_object_is_in_random_scenes() {
     let mut random = Random::new(1);
@@ -269,10 +270,9 @@ fn assert_same_bits(one: &Rendered, part: Area, crop: &Rendered, what: &str) {
     }
 }
 
-/// Returns whether samples can be compared with the exact picture. If squares of a board are
-/// extremely small, samples show only one of its colours, and the exact picture shows the mean of
-/// both. Such boards, with squares below 10⁻⁹⁰ of the eye's height above the board, are not
-/// compared.
+/// Returns whether the exact picture of a scene can be compared with samples. It cannot if a board
+/// has squares below 10⁻⁹⁰ of the eye's height above the board. Samples of such a board show only
+/// one of its two colours, whereas the exact picture shows their mean.
 fn is_comparable(scene: &Scene) -> bool {
     scene.objects.iter().all(|object| match &object.shape {
         Shape::Checkerboard(board) => {
@@ -341,9 +341,9 @@ fn random_scenes_render_alike_in_parts_and_agree_with_samples() {
         let Rendered::Exact(exact) = assert_parts_agree(&computed, random, &text) else {
             panic!("not computed");
         };
-        // In an optimized build on an idle machine, each pixel takes at most two seconds: one in
-        // the whole picture, and one in the four parts. The limit of 20 seconds allows for slower
-        // builds and busy machines.
+        // In an optimized build on an idle machine, a pixel takes at most two seconds, because it
+        // is computed twice: for the whole picture, and for one of the four parts. The limit of 20
+        // seconds allows for slower builds and busy machines.
         let (time, pixels) = (start.elapsed(), whole(&scene).pixels() as u32);
         assert!(time < pixels * Duration::from_secs(20), "{time:?}: {text}");
         if is_comparable(&scene) {

@@ -67,8 +67,8 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     reading.scene.is_some()
 }
 
-/// Asserts that labels and edits lie in the text and between its characters, and that the edits of
-/// a fix do not overlap.
+/// Asserts that all labels and edits begin and end between characters of the text, and that the
+/// edits of a fix do not overlap.
 #[track_caller]
 fn assert_places(found: &[Diagnostic], sources: &Sources) {
     for diagnostic in found {
@@ -154,8 +154,8 @@ fn a_token_repeated_many_times_is_read_soon(effort: Effort) {
     }
 }
 
-/// If a text has too many mistakes, the first ten thousand are reported. A message says that the
-/// others are left out, wherever they are.
+/// If a text has too many mistakes, only the first ten thousand are reported. A message then says
+/// that the other mistakes are left out.
 #[test]
 fn reports_stop_at_the_maximum_number_of_problems() {
     let many = |piece: &str| piece.repeat(20_000);
@@ -338,8 +338,8 @@ fn scenes_with_random_slips_are_read_soon_and_alike_in_parts(effort: Effort) {
             bytes.splice(at..end, slips[up_to(slips.len())].iter().copied());
         }
         if let Ok(text) = str::from_utf8(&bytes) {
-            // If the text cannot be formatted, the function `formatted` asserts that it has an
-            // error.
+            // The result is not used: if the text cannot be formatted, `formatted` itself asserts
+            // that at least one diagnostic is an error.
             let _ = formatted(text);
             parts::assert_same_in_parts(text, 1 + up_to(99), &[]);
         }

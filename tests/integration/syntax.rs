@@ -99,8 +99,8 @@ pub fn tokens(text: &str) -> Vec<&str> {
     tokens.collect()
 }
 
-/// An invisible character, such as a no-break space, may split an operator of two characters. The
-/// parser then reads two tokens and the rest of the text, and does not hang.
+/// An invisible character, such as a no-break space, may lie between the two characters of an
+/// operator. The parser must then reach the end of the text.
 #[test]
 fn operators_split_by_an_invisible_character_do_not_hang_the_parser() {
     let mut torn = 0;

@@ -23,9 +23,9 @@ fn peak_threads(command: &mut Command) -> usize {
     most
 }
 
-/// Asserts that the program renders with the requested number of threads, for one and for six. For
-/// one, up to four threads are allowed in total, because the main thread and threads that wait for
-/// Ctrl-C are counted, too.
+/// Asserts that the program renders with the requested number of threads. With `--threads 1`, up to
+/// four threads are allowed in total, because the main thread and threads that wait for Ctrl-C are
+/// counted, too. With `--threads 6`, at least six threads must be seen.
 fn assert_thread_limit(folder: &Folder, line: &str) {
     let most =
         |threads: u32| peak_threads(&mut folder.command(&format!("{line} --threads {threads}")));

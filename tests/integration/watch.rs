@@ -175,7 +175,7 @@ fn saves_by_renaming_and_a_pipe_in_between_are_noticed() {
     // Other editors rename the old file to a backup, then write a new one.
     fs::rename(watch.path("a.scn"), watch.path("a.scn~")).unwrap();
     watch.becomes("lime");
-    // A second save shows that the program does not watch the backup.
+    // This save is noticed only if the program watches the new file rather than the backup.
     watch.becomes("red");
     assert_eq!(watch.count("error"), 0, "{}", watch.said());
     // If a pipe takes the place of the file, the program reports it and waits for a file.
@@ -291,8 +291,9 @@ fn other_files_permissions_and_reads_trigger_no_picture() {
     let permissions = fs::metadata(watch.path("a.scn")).unwrap().permissions();
     fs::set_permissions(watch.path("a.scn"), permissions).unwrap();
     watch.folder.read("a.scn");
-    // The program renders after a short time without changes of the folder. The wait is longer than
-    // this time. A change of another kind than a save would therefore cause a picture of its own.
+    // If the reading or the new permissions caused a picture, the program would render it after a
+    // short time without further changes. The test waits longer than this time, so that such a
+    // picture would be counted besides that of the next save.
     thread::sleep(Duration::from_millis(100));
     watch.becomes("blue");
     watch.wait("it says so", || watch.count("wrote") >= 2);

@@ -9,9 +9,10 @@ import { Refusal } from "./protocol";
 /** An open channel that sends texts to the engine. */
 interface Wire { send(text: string): void }
 
-/** Reason why there is no connection. After `lost`, `ended` (by the host) and `failed` (a worker),
- * the page reconnects by itself. After any other reason, the user must open an address that the
- * host has printed. */
+/** Reason why there is no connection. After the first three reasons, the page reconnects by itself:
+ * the connection was lost, the host ended, or the worker failed. After any other reason, the user
+ * must open an address that the host has printed: the page has no token, or its token is unknown,
+ * from an earlier run of the host, sent too late, or sent twice. */
 type Closed = "lost" | "ended" | "failed" | "keyless" | "unknown" | "restarted" | "late" | "twice";
 const TRIED_AGAIN: Closed[] = ["lost", "ended", "failed"];
 
@@ -23,14 +24,16 @@ export type ConnectionState = "connecting" | "open" | "silent" | Closed;
 type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void,
   closed: (why: Closed) => void) => void;
 
-/** Pauses before attempts to reconnect, in ms. They grow to spare the machine; the last repeats. */
+/** Pauses before attempts to reconnect, in ms. They grow, so that a missing host costs little work.
+ * The last pause repeats. */
 const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
 /** Silence of the server, in ms, after which the page sends a test request. A shorter time would
  * cause more requests; a longer one would delay the notice that the server does not reply. */
 const QUIET = 700;
 const HANGING = 1200; // wait for the reply, in ms, after which it is reported as late
 
-/** Prefix of the ids of the page's own requests. Those of the language client have none. */
+/** Prefix of the ids of the page's own requests. The language client's requests have ids without
+ * it, so an answer's id tells to whom the answer belongs. */
 const OWN = "page-";
 const NO_CONNECTION = "This cannot be done without a connection.";
 
@@ -41,7 +44,8 @@ const UNKNOWN = 4001;
 class Connection implements Transport {
   state: ConnectionState = "connecting";
   onState: (state: ConnectionState) => void = () => {};
-  /** Called with true if the server does not reply in time, and with false when it replies. */
+  /** Called with true if a test request gets no reply in time, and with false at the next
+   * message. */
   onHang: (isHanging: boolean) => void = () => {};
   /** Resolves when the language client is initialized and all earlier messages are sent. */
   ready: () => Promise<unknown> = () => Promise.resolve();
@@ -53,7 +57,8 @@ class Connection implements Transport {
   private requests = 0;
   private attempts = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
-  /** Number of the latest attempt to connect. Events of earlier attempts are ignored. */
+  /** Number of the latest attempt to connect, counted from 1. Events of earlier attempts are
+   * ignored. */
   private current = 0;
   /** Time of the last message from the server, in ms. */
   private heard = 0;
@@ -67,7 +72,8 @@ class Connection implements Transport {
     document.addEventListener("visibilitychange", () => (this.asked = 0));
   }
 
-  /** Sends a test request if the server is silent, and reports a late reply. */
+  /** Checks whether the server still replies. Sends a test request after a silence, and calls
+   * `onHang` if its reply is late. Called four times a second. */
   private listen(): void {
     const now = performance.now();
     if (this.wire === null || document.hidden) return;
@@ -151,7 +157,8 @@ class Connection implements Transport {
     for (const waiting of this.waiting.values()) waiting.reject(lost);
     this.waiting.clear();
     if (!TRIED_AGAIN.includes(why)) return this.enter(why);
-    // The state `ended` stays until the host answers again.
+    // After the host has ended, the state remains `ended` until a new connection opens, although
+    // attempts to reconnect fail with other reasons.
     const isSilent = why === "lost" && this.attempts >= PAUSES.length;
     if (this.state !== "ended") this.enter(isSilent ? "silent" : why);
     const pause = PAUSES[Math.min(this.attempts++, PAUSES.length - 1)];
@@ -165,7 +172,8 @@ class Connection implements Transport {
   }
 }
 
-/** Opens a WebSocket. The page sends its token; the host answers with the token to use next. */
+/** Opens a WebSocket and sends the page's token. The host's first message contains the token to use
+ * next time; after it, the channel is open. */
 const webSocket: Connector = (opened, receive, closed) => {
   const { token } = session;
   if (token === null) return closed("keyless");
@@ -182,7 +190,7 @@ const webSocket: Connector = (opened, receive, closed) => {
     ? (session.isFresh ? "unknown" : "restarted") : CLOSED[code] ?? "lost"));
 };
 
-/** Starts the engine in a web worker. Its first message opens the channel, a failure closes it. */
+/** Starts the engine in a web worker. Its first message opens the channel; a failure closes it. */
 const worker: Connector = (opened, receive, closed) => {
   const engine = new Worker(new URL("engine.js", location.href), { type: "module" });
   let isOpen = false;

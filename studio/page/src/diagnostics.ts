@@ -16,8 +16,8 @@ export async function publishDiagnostics(published: PublishDiagnosticsParams): P
   const { doc } = editor.view.state;
   if (file === null || file.doc !== doc || (published.version !== undefined
     && published.version !== file.version)) return;
-  // Without diagnostics, and without marks to remove, nothing changes, so the fixes are not
-  // requested. This is the usual case during a drag.
+  // If there are no diagnostics, and none were shown before, there is nothing to update, so the
+  // fixes are not requested. This is the usual case during a drag.
   const isRight = published.diagnostics.length === 0;
   if (isRight && !hasMarks) return;
   const actions = isRight ? [] : await editor.ask<CodeAction[]>("textDocument/codeAction",
@@ -26,8 +26,8 @@ export async function publishDiagnostics(published: PublishDiagnosticsParams): P
   if (editor.view.state.doc === doc) show(published.diagnostics, actions ?? []);
 }
 
-/** Whether the last update gave diagnostics to the editor. Marks of diagnostics may then have to be
- * removed. */
+/** Whether the editor shows marks of diagnostics. They must be removed when there are no
+ * diagnostics any more. */
 let hasMarks = false;
 
 function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
@@ -58,12 +58,14 @@ const keyOf = ({ message, range }: ServerDiagnostic) => JSON.stringify([message,
 function fix(action: CodeAction): Action {
   const { doc } = editor.view.state;
   const edits = action.edit?.changes?.[editor.uri] ?? [];
-  // If the fix inserts an example value, `value` is its range within the text of the first edit.
+  // Range of the example value that the fix inserts, if any. The offsets are relative to the start
+  // of the first edit's text.
   const [value]: [number, number][] = action.data?.values ?? [];
   return {
     name: visible(action.title),
     apply(view) {
-      // The edits fit only the checked text. If it has changed, new diagnostics will arrive.
+      // The edits fit only the text that was checked. If the text has changed since, they are not
+      // applied; diagnostics of the new text will arrive.
       if (view.state.doc !== doc) return;
       // The example value is selected, so that typing replaces it. Its range is in bytes, which are
       // characters here, because the text of such a fix is ASCII.

@@ -40,8 +40,9 @@ export function createSvg<K extends keyof SVGElementTagNameMap>(tag: K,
   return element;
 }
 
-/** Calls `move` for each movement of a pressed pointer, and `end` when the pointer is released. If
- * Escape is pressed, or the returned function is called, calls `cancel` instead of `end`. */
+/** Calls `move` for each movement of a pressed pointer, and `end` when the pointer is released or
+ * the browser cancels it. If Escape is pressed, or the returned function is called, calls `cancel`
+ * instead of `end`. */
 export function followPointer(pressed: PointerEvent, move: (event: PointerEvent) => void,
   end: () => void, cancel: () => void): () => void {
   const following = new AbortController();

@@ -1,7 +1,6 @@
 // Drafts: unsaved texts, stored while the user types. They are offered again after a reload, a
-// crash or the end of the host. Each page stores its draft under its own key. If a draft is
-// restored before the host has answered, the page continues it under the draft's key. The browser
-// keeps a draft until the host has stored it, or always if there is no host.
+// crash or the end of the host. Each page stores its draft under its own key. If there is a host,
+// the draft is sent to it; the browser's copy is deleted when the host has stored the draft.
 
 import { createStore, del, delMany, set, values } from "idb-keyval";
 import { connection, isServed } from "./connection";
@@ -29,7 +28,8 @@ const freshId = () => `${Date.now()} ${Math.random()}`;
 let id = freshId();
 /** Whether a draft is stored under the key of this page. */
 let isKept = false;
-/** Drafts that must still be stored, by key. Null stands for a draft that must be deleted. */
+/** Drafts that are not stored yet, by key. The host stores them or, if there is no host, the
+ * browser. Null stands for a draft that must be deleted. */
 const due = new Map<string, Draft | null>();
 /** Last draft that the user has restored. Its stored copy is kept until its text is saved to the
  * file, since Undo can remove the text from the editor. */
@@ -58,8 +58,9 @@ async function keepDraft(saved?: string): Promise<void> {
   const isNew = isUnsaved && textToSave !== restored?.text;
   if (isNew || isKept) due.set(id, isNew ? newDraft() : id === restored?.id ? restored : null);
   isKept = isNew;
-  // Before the server has opened the scene, the text in the editor may still be replaced, so an
-  // offered draft is kept even if it is equal to this text.
+  // An offered draft whose text is saved or in the editor is not needed, so it is deleted. Before
+  // the server has opened the scene, the text in the editor may still be replaced, so it is not
+  // compared then.
   const there = [saved, editor.uri === "" ? undefined : textToSave];
   for (const it of offers) if (there.includes(it.text)) forget(it);
   await Promise.all([...due].map(async ([id, draft]) => {
@@ -81,7 +82,8 @@ function newDraft(): Draft {
   return { id, name, text, base, time: Math.floor(Date.now() / 1000) };
 }
 
-/** Offers drafts of other pages: first the host's, then also those in the browser. */
+/** Offers the drafts of other pages. `hosts` are those that the host has stored; they are offered
+ * at once, and those in the browser as soon as they are read. */
 export async function offerDrafts(hosts: Draft[] = []): Promise<void> {
   offers = hosts;
   show();
@@ -113,8 +115,9 @@ function answer(draft: Draft, isRestored: boolean): void {
   if (isRestored) {
     due.delete(draft.id);
     restored = draft;
-    // If the host has not answered yet, it may have a copy of this draft. The page continues the
-    // draft under the same key, so that later changes replace the copy.
+    // Before the host has sent its state, its drafts are unknown: it may have stored this draft
+    // under the same key. The page takes over this key, so that later changes replace the host's
+    // copy.
     if (!files.isTold) id = draft.id;
     files.restore(draft.text, draft.base, draft.name);
   }

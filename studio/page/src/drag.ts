@@ -1,5 +1,6 @@
-// A drag of an object's handle or of the camera. Its result depends only on its first and latest
-// point and on the text at the press. The server gets this text under a separate URI.
+// A drag of an object's handle or of the camera. Each edit is computed from the text before the
+// drag, the first point of the pointer and its newest point, never from the edit before. So the
+// page opens the text before the drag as a separate document at the server.
 
 import { byId, newestOf } from "./dom";
 import { editor } from "./editor";
@@ -10,8 +11,8 @@ import { isSuperseded, Refusal, type Dragged, type Point } from "./protocol";
 import { tools } from "./tools";
 import { setText } from "./visible";
 
-/** A handle that the user drags. `at` is its point in the picture when the drag began, and `object`
- * is null if the handle belongs to the camera. */
+/** A handle that the user drags. `at` is the handle's point in the picture before the drag.
+ * `object` is null for a handle of the camera. */
 export interface Held { object: number | null; handle: string; at: Point }
 
 const BROKEN = "The text has errors. Mend them, then the picture can be changed by hand.";

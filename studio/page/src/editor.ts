@@ -37,8 +37,8 @@ const wholeCharacters = EditorState.transactionFilter.of(transaction => {
   return changes.length === 0 ? transaction : [transaction, { changes, sequential: true }];
 });
 
-/** Replaces selected lines by typed text. If the browser replaced them, it would add inline styles,
- * which the content security policy (CSP) forbids. */
+/** Inserts typed text if the selection spans several lines, or if the text does. The browser is not
+ * left to do so: it would add inline styles, which the page's content security policy forbids. */
 const replacedLines = EditorView.domEventHandlers({
   beforeinput({ inputType, data, isComposing }, view) {
     const { state } = view;
@@ -53,7 +53,8 @@ const replacedLines = EditorView.domEventHandlers({
   },
 });
 
-/** Lets a typed `}` replace the block's closing `}` if only white space is between them. */
+/** Makes a typed `}` replace the existing closing brace of the block around the cursor. Does so
+ * only if nothing but white space lies between the cursor and that brace. */
 const closingBrace = Prec.high(EditorView.inputHandler.of((view, from, to, typed) => {
   const { doc } = view.state;
   const space = typed === "}" ? /^\s*(?=\})/.exec(doc.sliceString(to, doc.length))?.[0] : undefined;
@@ -67,7 +68,8 @@ const closingBrace = Prec.high(EditorView.inputHandler.of((view, from, to, typed
   return true;
 }));
 
-/** Scrolls the editor, but not the page, to a change if the editor does not have the focus. */
+/** If the editor does not have the focus, scrolls the editor's text to the position `head`.
+ * CodeMirror's default would also scroll the page. */
 function withinText(view: EditorView, { head }: SelectionRange): boolean {
   if (view.hasFocus) return false;
   const { scrollDOM, documentPadding } = view;
@@ -157,8 +159,8 @@ class SceneEditor {
     return connection.request(method, { textDocument: { uri: this.uri }, ...params });
   }
 
-  /** Sends a request about the scene. Resolves to null if the request fails, or if the answer is
-   * null because the text has errors. */
+  /** Sends a request about the scene. Resolves to null if the request fails. Some answers of
+   * the server are null, too, if the text has errors. */
   async ask<Result>(method: string, params: object): Promise<Result | null> {
     try {
       return await this.request<Result | null>(method, params);
@@ -203,9 +205,9 @@ class SceneEditor {
       Prec.highest(EditorState.readOnly.of(false)), this.client.plugin(this.uri, "pinhole")]) });
   }
 
-  /** Replaces the text by changing only what differs, so that the cursor stays. If possible, a pure
-   * insertion or deletion is moved to the start of its line: then it covers the lines of a block,
-   * not the end of one block and the start of the next. */
+  /** Replaces the text by changing only what differs, so that the cursor stays. A pure insertion or
+   * deletion is moved to the start of its line if the result is the same. An inserted block then
+   * covers its own lines, rather than the end of the block before it and its own beginning. */
   replace(content: string): void {
     const [old, text] = [this.text, withLf(content)];
     let end = 0;

@@ -32,7 +32,8 @@ class Scene {
   /** Initial text of a new scene, which need not be saved; null if the scene comes from a file. */
   untouched: string | null = null;
 
-  /** If `of` is given, the scene is a copy of `of`, which it replaces as soon as it is saved. */
+  /** Creates a scene. If `of` is given, the new scene is a copy of `of` under another name, and
+   * becomes the current scene when it is saved. */
   constructor(public name = "scene.scn", readonly of: Scene | null = null) {}
 
   /** Last known content of the file, or the initial text if there is no file. */
@@ -50,8 +51,8 @@ const SLOW = 800;
 const LONE = /\r(?!\n)/; // a carriage return that ends no line
 const NOT_SAVED = "Nothing was saved, because there is no connection. The text stays here.";
 
-/** Maximum number of differing lines to search for. With more, the search would take too long, so
- * all lines count as differing. */
+/** Maximum number of removed and added lines in a comparison of two texts. If there are more, a
+ * comparison would take too long, so all lines are shown as removed or added. */
 const MOST_CHANGES = 3000;
 
 /** The host's file and local files. A page without a host has only local files. */
@@ -61,8 +62,8 @@ class Files {
   onLeave: () => void = () => {};
   /** Whether the host has sent its scene to this page. */
   isTold = false;
-  /** Text of a draft or a link that was restored before the host sent its scene. `base` is the
-   * content that the draft's file had when editing began; undefined for a link. */
+  /** Draft or link that was restored before the host sent its scene; null if there is none. `base`
+   * is the content of the draft's file when its editing began, and undefined for a link. */
   private early: { base: string | null | undefined; text: string } | null = null;
   /** The scene of the host's file. */
   private hosts = new Scene();
@@ -98,8 +99,8 @@ class Files {
       effects: turns.of({ from: this.at, to }) });
   }
 
-  /** Makes the scene to which the text belongs the current one, after Undo, Redo or the start of a
-   * new scene. */
+  /** Makes the scene that the editor now shows the current one, after Undo, Redo or the start of a
+   * new scene. If that scene was saved under another name, its newest copy is made current. */
   follow(transactions: readonly Transaction[]): void {
     for (const { effects } of transactions) for (const it of effects) {
       if (it.is(turns)) for (let at: Scene | null = it.value.to; at; at = at.copy) this.at = at;
@@ -148,7 +149,9 @@ class Files {
       if (this.early !== null) {
         this.restore(early, this.early.base);
         editor.view.dispatch({ selection });
-        // A restored link stays in the page's address, so its scene is not lost if it is not saved.
+        // Without a host, the text of a restored link remains in the page's address, so it is not
+        // lost if it is never saved. It is therefore treated as the initial text of a new scene,
+        // which need not be saved.
         if (!isServed && this.early.base === undefined) this.at.untouched = this.early.text;
       }
       if (saved && text === null) this.tellGone(reason);
@@ -167,7 +170,8 @@ class Files {
     if (text === null) {
       if (!isGone) this.tellGone(reason);
     } else if (text === seen) {
-      // The file again has the content that the page is based on, so there is nothing to decide.
+      // The file has the content that the page has read before, so the user need not choose between
+      // two texts. This happens if another program restores the file.
       this.conflict.close();
       if (isGone) say(`${this.shownName} is there again.`);
     } else if (editor.text === withLf(text) || (seen !== null && editor.text === withLf(seen))) {
@@ -320,7 +324,8 @@ class Files {
     this.conflict.returnValue = "";
     this.conflict.onclose = () => {
       const { returnValue: choice } = this.conflict;
-      // If the user makes no choice, `base` stays the older content, so the next save asks again.
+      // If the user closes the dialog without a choice, `base` is not changed. It then differs from
+      // the file, so the next save asks again.
       if (choice === "") return;
       this.at.seen = this.at.base = theirs;
       if (choice === "page") void this.save();

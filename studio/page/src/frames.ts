@@ -23,14 +23,15 @@ export interface Shown {
  * be rendered quickly; with more pixels, the picture would follow the pointer late. */
 const COARSE_PIXELS = 320 * 180;
 
-/** Maximum numbers of pixels of a picture and of one of its sides. All browsers can show pictures
- * of this size; a larger picture is requested at a lower resolution. */
+/** Maximum size of a picture: its number of pixels, and the length of each side. All browsers can
+ * show pictures of this size; a larger picture is requested at a lower resolution. */
 const MOST = { pixels: 16_000_000, side: 8192 };
-/** Pause in a drag, in ms, before finer pictures are requested. It is a little longer than the time
- * between two refreshes of a usual screen (17 ms). */
+/** Pause in a drag, in ms, before finer pictures are requested. A moving pointer changes the text
+ * once per refresh of the screen (17 ms at 60 Hz). With a shorter pause, finer pictures would be
+ * requested in the middle of a movement. */
 const HAND_RESTS = 20;
-/** Rendering time, in ms. If the last final picture was rendered faster, the next one is expected
- * as soon, so no sharp picture is requested before it. */
+/** Threshold for the rendering time of the last final picture, in ms. Below it, the next final
+ * picture is expected to be as fast, so no sharp picture is requested first. */
 const SOON = 200;
 
 /** A requested picture: its text, and the number of the request. */
@@ -38,8 +39,8 @@ interface Asked { doc: Text | null; generation: number }
 
 class Frames {
   onShow: (shown: Shown) => void = () => {};
-  /** Called when it is known whether the newest text has errors (`broken`) or not (`good`), and
-   * with the error if a request fails. */
+  /** Called with `good` or `broken` when the server has answered whether the newest text has
+   * errors, and with the error when a request fails. */
   onState: (state: "good" | "broken" | Error) => void = () => {};
   /** Called when a drag ends. */
   onRest: () => void = () => {};
@@ -101,8 +102,8 @@ class Frames {
         const before = { doc: null, generation: asked.generation - 1 };
         const isDone = this.shown?.fineness === "final"
           && this.shown.generation === before.generation;
-        // When the text gets errors, the final picture of its last version without errors is
-        // requested, unless it is already shown. While errors remain, it is not requested again.
+        // Requests the final picture of the last version without errors, unless it is already
+        // shown. It is requested when the text gets errors, and not again while errors remain.
         if (isFirst && !isDone) void this.present(before, "final", this.ask({ last: true }));
         return null;
       }

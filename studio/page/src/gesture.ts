@@ -36,8 +36,9 @@ function grouped(past: Extension = []): Extension {
   let last = 0;
   return [
     history({
-      // The delay is so long that it has no effect. Instead, `joinToEvent` decides which changes
-      // are undone together, and isolated changes are undone alone.
+      // CodeMirror undoes two changes separately if the time between them is longer than this
+      // value. It is longer than any session, so `joinToEvent` alone decides. Only changes that are
+      // marked as isolated are always undone alone.
       newGroupDelay: 1e11,
       joinToEvent: (transaction, isAdjacent) => transaction.annotation(step) === "next"
         || (isAdjacent && Date.now() - last < TYPING_PAUSE),
@@ -50,7 +51,8 @@ function grouped(past: Extension = []): Extension {
   ];
 }
 
-/** Returns an undo history that joins typing without pauses, and each gesture, to one change. */
+/** Returns the extension for Undo. One Undo reverts a whole gesture, or all that was typed without
+ * a pause. */
 export function gestureHistory(): Extension { return [kept.of(grouped()), touchedField]; }
 
 /** Changes the text, and replaces the undo history by `past` or by an empty one. */

@@ -11,8 +11,8 @@ import { tools, type Tool } from "./tools";
 
 /** Step of an arrow key, in pixels of the picture; with Control, a tenth for fine movements. */
 const KEY_STEP = 10;
-/** Pause in pressing keys or turning the wheel, in ms, after which their drag ends. A held key
- * repeats faster, so that its repetitions belong to one drag. */
+/** Pause between key presses or turns of the wheel, in ms, after which the drag that they make
+ * ends. A held key repeats faster, so all its repetitions make one drag. */
 const KEY_PAUSE = 500;
 
 const ARROWS: Record<string, Point> =
@@ -22,7 +22,8 @@ const ARROWS: Record<string, Point> =
  * text. */
 const TEXT = "input:not([type=radio],[type=checkbox],[type=range]), [contenteditable=true], dialog";
 const SAVE = ["Control+s", "Control+Shift+s"]; // work in `TEXT`, too
-/** Elements in which arrow keys, Space and Escape do not control the picture. */
+/** Elements that use arrow keys, Space or Escape themselves, so these keys do not control the
+ * picture there. */
 const CONTROL = "input, select, button:not(.handle), summary, #divider, [open], [role=group]";
 
 /** Returns the name of a pressed key as the attribute `data-key` spells it. */
@@ -31,8 +32,8 @@ function nameOf({ key, ctrlKey, metaKey, shiftKey }: KeyboardEvent): string {
   return `Control+${shiftKey ? "Shift+" : ""}${key.toLowerCase()}`;
 }
 
-/** Returns the element that a key operates. If the key belongs to the selected constraint of drags,
- * returns the element `free`, so that the key removes the constraint. */
+/** Returns the element that a key operates. If the key selects a constraint of drags that is
+ * selected already, returns the element `free` instead, which removes the constraint. */
 function controlOf(key: string): HTMLElement | undefined {
   const controls = [...document.querySelectorAll<HTMLElement>("[data-key]")];
   const found = controls.find(it => it.dataset["key"]?.split(" ").includes(key));
@@ -121,8 +122,9 @@ function ofCamera(handle: Tool): Drag {
   return new Drag(at, () => ({ object: null, handle, at }));
 }
 
-/** Begins a drag of the focused handle. If none has the focus, drags the selected object, or the
- * camera if a camera tool is chosen. */
+/** Begins a drag of the focused handle. Otherwise drags what the chosen tool moves: the camera, or
+ * with the tool `move` the selected object. Returns null, with a message, if no object is
+ * selected. */
 function begin(focused: Element): Drag | null {
   const { tool } = tools;
   const isHandle = focused.closest(".handle") !== null;

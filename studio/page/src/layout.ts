@@ -30,7 +30,7 @@ divider.addEventListener("pointerdown", event => {
   divider.setPointerCapture(event.pointerId);
   event.preventDefault();
   const { left, top, width, height } = panes.getBoundingClientRect();
-  // On a narrow screen, the picture is above the text, so the text's share counts from below.
+  // On a narrow screen, the text is below the picture, so its share is measured from the bottom.
   const move = ({ clientX, clientY }: PointerEvent) =>
     share(100 * (isNarrow.matches ? 1 - (clientY - top) / height : (clientX - left) / width));
   const before = Number(divider.getAttribute("aria-valuenow"));

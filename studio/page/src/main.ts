@@ -124,8 +124,8 @@ let waiting: HostedFile | null = null;
 async function hosted(file: HostedFile): Promise<void> {
   await linked;
   const first = !files.isTold;
-  // A playing slider must stop. It counts as a drag, and the host's file is handled only when no
-  // drag is under way.
+  // During a drag, the host's file waits until the drag ends. A playing slider counts as a drag
+  // that may last long, so it is stopped.
   stop();
   waiting = frames.dragging === null ? null : file;
   if (waiting !== null) return;

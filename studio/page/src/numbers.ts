@@ -46,15 +46,15 @@ export class Turn {
 
   constructor(private readonly literal: Literal, private readonly limits = limitsOf(literal.to)) {}
 
-  /** Calls `value` with the number's step, and sets the number to the result, rounded and clamped
-   * to the number's limits. */
+  /** Sets the number to the value that `value` returns, rounded and clamped to the number's limits.
+   * `value` gets the number's step. */
   async set(value: (step: number) => number): Promise<void> {
     const { from, to } = this.literal;
     const limits = await this.limits;
     if (limits === null) return;
     const { least, most, step, decimals } = limits;
     const right = Math.min(most ?? Infinity, Math.max(least ?? -Infinity, value(step)));
-    // Adding 0 turns −0 into 0, which has no sign.
+    // Adding 0 turns −0 into 0, so that no minus sign is written before a zero.
     this.gesture.write({ from, to, insert: String(Number(right.toFixed(decimals)) + 0) });
   }
 
@@ -98,8 +98,8 @@ export class Dial {
     frames.released(this);
   }
 
-  /** Sets the slider to the number in the text, unless the slider is being moved. Returns the
-   * number's literal; null if it is deleted. */
+  /** Moves the slider to the value of the number in the text, unless the user is moving the slider.
+   * Returns the number's place and value; null if the number was deleted. */
   show(): Literal | null {
     const found = this.literal();
     if (found === null || this.turn !== null || this.limits === null) return found;

@@ -19,12 +19,14 @@ const SAMPLES_ZOOM = 4;
 const EDGE = 14;
 
 class OverlayLayer {
-  /** Overlays of the newest text or, if that has errors, of the last text without errors. */
+  /** Overlays of the newest text. While the newest text has errors, the overlays are those of the
+   * last text without errors. */
   data: Overlays | null = null;
   /** Whether `data` belongs to the current text. */
   isTrue = true;
   hovered: number | null = null;
-  /** Called when overlays must be drawn that `data` may not contain. */
+  /** Called when `data` may lack overlays that must be drawn: when a layer is switched on, or when
+   * the pointer reaches an object without overlays. */
   onNeed: () => void = () => {};
   selected: number | null = null;
   private samples: { pixel: Point; samples: Samples } | null = null;

@@ -31,7 +31,8 @@ class Picture {
     stage.addEventListener("wheel", event => {
       event.preventDefault();
       if (event.buttons !== 0) return; // a drag is under way
-      // While the Shift key is held, browsers report the wheel's movement as `deltaX`.
+      // While the Shift key is held, some browsers report the wheel's movement as `deltaX`, so it
+      // is used if `deltaY` is 0.
       const turned = (event.deltaY || event.deltaX) / (event.deltaMode === 0 ? 300 : 10);
       if (event.shiftKey) this.onDolly(turned);
       else this.zoomBy(2 ** -turned, this.local(event));

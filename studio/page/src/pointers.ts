@@ -69,7 +69,7 @@ async function grab(point: Point): Promise<Held | null> {
   const { choices } = selection;
   const pick = await editor.ask<Pick>("pinhole/pick", { point });
   const object = pick?.object ?? null;
-  // If the user has selected something before the answer came, that selection stays.
+  // If the user selects something else before the server answers, that selection stays.
   if (choices === selection.choices) selection.select(object);
   if (object === null) return null;
   const only = [object.index];

@@ -9,8 +9,9 @@ const KEY = "projector";
 const of = inAddress(KEY);
 export const isProjector = of !== null;
 
-/** Name of the tab's broadcast channel from before a reload; null if no projector window had
- * requested pictures. By the same name, such windows still get pictures. */
+/** Name of this tab's broadcast channel before it was reloaded; null if no projector window has
+ * requested pictures from the tab. The tab keeps the name, so that open projector windows continue
+ * to get pictures. */
 const known = remembered(KEY, "sessionStorage");
 const name = of ?? known ?? `${Date.now()}-${Math.random().toString(36).slice(2)}`;
 const channel = new BroadcastChannel(`pinhole-${name}`);

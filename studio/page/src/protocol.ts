@@ -42,8 +42,8 @@ export type Along = "x" | "y" | "z" | "floor";
 export interface Dragged {
   edits: TextEdit[];
   values: string[];
-  /** Names of fields that change although they were not dragged, because they use the same numbers
-   * of the text, such as `camera.lookat`. */
+  /** Names of other fields, such as `camera.lookat`, whose values the edits change too. A drag
+   * changes numbers in the text, and a definition with `let` may be used by several fields. */
   also?: string[];
 }
 
@@ -52,9 +52,9 @@ export interface Dragged {
 export interface Limits {
   least: number | null; most: number | null; step: number; decimals: number; ends: [number, number];
 }
-/** A definition with `let`. `limits` is null if its value is not a number or an angle. `note` is a
- * message for the user, if the comment after the definition is no valid range, or if the slider's
- * range differs from it. */
+/** A definition with `let`. `limits` is null if its value is neither a number nor an angle. `note`
+ * is a message for the user about the comment after the definition: it is no valid range, or the
+ * slider's range differs from it. */
 export interface Slider { name: string; range: Range; limits: Limits | null; note: string | null }
 
 /** Edits that add a block, the name of its object, and an offset in the block for the cursor. */

@@ -32,8 +32,9 @@ class Selection {
    * selected something else in the meantime. */
   choices = 0;
   private placed: Placed[] = [];
-  /** Object that the user has chosen. It tells apart objects that a loop creates from the same
-   * block. It is null if the user chose to select nothing, and undefined before any choice. */
+  /** Object that the user has chosen; null if the user chose to select nothing; undefined before
+   * any choice. It is stored because the cursor alone does not tell which of the objects that a
+   * loop creates from one block is meant. */
   private chosen: SceneObject | null | undefined;
   private readonly handles = byId("handles");
   private readonly menu = byId<HTMLSelectElement>("objects");
@@ -81,7 +82,8 @@ class Selection {
     this.choices++;
     this.chosen = object;
     if (object === null) return this.follow();
-    // The server lists only a limited number of objects, so this one may be missing.
+    // The server lists only a limited number of objects. If this one is not listed, it is added
+    // here.
     const isListed = this.placed.some(it => it.object.index === object.index);
     if (!isListed) this.placed.push(this.place(object));
     this.name();
@@ -95,16 +97,17 @@ class Selection {
     return { object, from: editor.offset(start), to: editor.offset(end) };
   }
 
-  /** Selects the object at the cursor. If `isByCursor` is false, an object that is already selected
-   * stays selected. */
+  /** Selects the object at the cursor. Unless `isByCursor` is set, an object that is already
+   * selected stays selected wherever the cursor is. */
   private follow(isByCursor = false): void {
     const { head } = editor.view.state.selection.main;
     const there = this.placed.filter(it => it.from < it.to);
     const { from = 0, to = 0 } = this.selected ?? {};
     const kept = isByCursor || from === to ? [] : there.filter(it => it.from === from);
     const touching = kept.length > 0 ? kept : there.filter(it => it.from <= head && head <= it.to);
-    // If the cursor is between two adjacent blocks, the second one is selected. If a loop creates
-    // several objects from the block, the chosen one of them is selected.
+    // If the cursor is between two adjacent blocks, the second block is used. If a loop creates
+    // several objects from the block, the one that the user has chosen before is selected, or else
+    // the first.
     const first = touching.find(it => head < it.to) ?? touching[0];
     const isChosen = ({ from, object: { indices } }: Placed) => from === first?.from
       && String(indices) === String(this.chosen?.indices);
@@ -203,7 +206,8 @@ async function add(about: object): Promise<void> {
   say(`${added.name ?? "A copy"} is added.`);
 }
 
-/** Deletes the selected block, together with its line if nothing else is on the line. */
+/** Deletes the block of the selected object. If nothing else is on the block's lines, deletes these
+ * lines completely. */
 function remove(): void {
   const { view, view: { state: { doc } } } = editor;
   const found = selection.selected;

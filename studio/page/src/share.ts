@@ -9,8 +9,8 @@ import { say } from "./status";
 import { setText } from "./visible";
 
 /** Maximum length of a scene in a link, in characters. Browsers limit the length of an address, so
- * a link to a longer scene might not open. The limit also protects from a damaged link whose data
- * unpack to a huge text. */
+ * a link to a longer scene might not open. When a link is read, the limit stops the unpacking of
+ * data that would become a huge text. */
 const LONGEST = 1_000_000;
 const KEY = "scene";
 const NO_COPY = "The browser does not let the page copy: copy the selected link yourself.";

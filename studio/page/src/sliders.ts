@@ -1,4 +1,5 @@
-// Sliders for all numbers and angles defined by `let`. One slider at a time can play, i.e. move.
+// Sliders for all numbers and angles defined by `let`. A slider can play: it then moves by itself.
+// At most one slider plays at a time.
 
 import type { ChangeDesc } from "@codemirror/state";
 import { byId, create, createButton } from "./dom";

@@ -36,8 +36,8 @@ export function stale(why: string | null): void {
   byId("stage").toggleAttribute("data-stale", why !== null);
 }
 
-/** Shows the state of the connection, unless the connection works. If it is lost or hangs and
- * `hasText` is true, also says where the text is kept. */
+/** Shows the state of the connection; hides the bar if the connection is open. If `hasText` is set,
+ * also says where unsaved text is kept while the connection is lost or does not answer. */
 export function connection(state: ConnectionState | "hanging", hasText: boolean): void {
   const isKept = hasText && state !== "connecting" && state !== "open";
   byId("connection-bar").hidden = state === "open";

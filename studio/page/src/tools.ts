@@ -35,7 +35,8 @@ class Tools {
       (this.chosen = input.value as Along | ""));
   }
 
-  /** Shows the axes and planes if an object is selected. `hasFloor` makes `floor` the default. */
+  /** Offers a choice of axes and planes if an object is selected. If `hasFloor` is set and the user
+   * has not chosen any, `floor` is chosen. */
   offer(isSelected: boolean, hasFloor: boolean): void {
     this.hasFloor = hasFloor;
     byId("along").hidden = !isSelected;

@@ -12,7 +12,7 @@ export function visible(text: string): string { return text.replace(INVISIBLE, c
 /** Returns `text` as one line. Line breaks and tabs also become codes such as `\u{a}`. */
 export function visibleLine(text: string): string { return visible(text).replace(BREAKS, code); }
 
-/** Sets an element's text if it differs from the current one. It is never parsed as HTML. */
+/** Sets an element's text if it differs from the current one. The text is never parsed as HTML. */
 export function setText(element: Element, text: string): void {
   const shown = visible(text);
   if (element.textContent !== shown) element.textContent = shown;

@@ -11,7 +11,8 @@ function run(engine: Engine): void {
     for (const text of texts) postMessage(text);
     if (isPlanned || !engine.isBusy()) return;
     isPlanned = true;
-    // Texts that arrive before this null message are handled before the next slice of work.
+    // The next slice of work begins when this null message arrives. Texts of the page that arrive
+    // before it are handled first.
     slices.port2.postMessage(null);
   };
   slices.port1.onmessage = () => {
@@ -22,8 +23,8 @@ function run(engine: Engine): void {
   say([engine.greeting()]);
 }
 
-// Throws an error in a timer, so that the page is told of it. A worker does not report an unhandled
-// rejection to the page.
+// Rethrows an error from a timer, so that the page gets an `error` event. A worker does not report
+// an unhandled rejection to the page.
 const fail = (error: unknown) => setTimeout(() => { throw error; });
 const wasm = new URL("pinhole_bg.wasm", import.meta.url);
 init({ module_or_path: wasm }).then(() => run(new Engine()), fail);

@@ -22,8 +22,9 @@ fn each_picture_of_a_sweep_equals_the_render_of_its_value() {
             for (i, set) in sets.split(' ').enumerate() {
                 folder.done(&format!("render a.scn --set {set} -o one.{ending}"));
                 let open = |name: &str| Picture::open(folder.path(name)).unwrap();
-                // The pixels are compared, since the file stores the value as it was computed,
-                // such as 29.999deg.
+                // Compares the pixels rather than the bytes of the files. A file also stores the
+                // swept value as computed, for example 29.999deg instead of 30deg, so the files may
+                // differ.
                 let name = format!("s-{i:02}.{ending}");
                 let one = open(&format!("one.{ending}"));
                 assert!(open(&name).pixels() == one.pixels(), "{set}: {name}");
@@ -73,8 +74,8 @@ fn names_have_one_place_for_the_number() {
     assert_eq!(folder.names(), ["a.scn"]);
 }
 
-/// A picture is rendered again if its file was made from another text, other overrides or another
-/// part, and if it is none.
+/// With `--resume`, a picture is rendered again only if its file is missing, is not a picture, or
+/// was made from another text, with other overrides or as another part.
 #[test]
 fn a_resumed_sweep_renders_only_what_is_missing() {
     let folder = folder();
@@ -120,7 +121,7 @@ fn a_resumed_sweep_renders_only_what_is_missing() {
     }
 }
 
-/// A sweep that is interrupted leaves whole pictures, and is continued with `--resume`.
+/// A sweep that is interrupted leaves only complete pictures.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_sweep_leaves_whole_pictures() {

@@ -14,14 +14,15 @@ fn parts_put_together_are_the_file_of_a_single_render() {
     ];
     for settings in settings {
         for ending in ["png", "exr"] {
-            // An exact picture comes with a note on its accuracy.
+            // An exact picture prints a note on its accuracy, so standard error need not be empty
+            // here.
             let render = |line: &str| folder.told(&format!("render a.scn {line} {settings}"), 0);
             render(&format!("-o whole.{ending}"));
             for count in [1, 2, 3, 9] {
                 let mut parts = String::new();
                 for i in 1..=count {
                     render(&format!("-o {i}.{ending} --shard {i}/{count}"));
-                    // The parts are given in reverse order, since their order does not matter.
+                    // The parts are given in reverse order: their order must not matter.
                     parts = format!("{i}.{ending} {parts}");
                 }
                 folder.done(&format!("merge {parts} -o merged.{ending}"));
@@ -61,7 +62,8 @@ fn crops_count_as_parts() {
     }
 }
 
-/// A PNG does not store more than 1 MiB of text. Its parts can still be told from others.
+/// A PNG stores at most 1 MiB of text, so it does not store a longer scene. Even so, `merge` must
+/// recognize parts of different scenes.
 #[test]
 fn parts_of_a_long_scene_are_put_together_without_its_text() {
     let folder = folder();

@@ -79,8 +79,8 @@ fn a_full_device_is_an_error_and_a_closed_pipe_is_not() {
         let said = to(full.unwrap().into());
         assert_eq!(said.status, 2, "{line}");
         assert!(said.errors.contains("cannot write to standard output"));
-        // The reading end of the pipe is closed, as the command `head` closes it after the lines
-        // that it needs.
+        // The reading end of the pipe is closed, as the command `head` closes it when it has read
+        // enough. The program must then end without an error message.
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
         let said = to(writer.into());

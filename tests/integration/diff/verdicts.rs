@@ -163,8 +163,8 @@ fn a_scribbled_picture_is_wrong_and_not_noise() {
 /// returns the pixel's new value.
 type Change = fn(Rgba<u8>, u32) -> Rgba<u8>;
 
-/// Obvious mistakes: the name that `diff` must report, and the change of every pixel that imitates
-/// the mistake.
+/// Obvious mistakes, each with the name that `diff` must report. The function changes every pixel
+/// of a right picture as the mistake would.
 const PLAIN: [(&str, Change); 7] = [
     ("black", |_, _| Rgba([0, 0, 0, 255])),
     ("one_colour", |_, _| Rgba([90, 120, 30, 255])),

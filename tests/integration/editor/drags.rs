@@ -45,7 +45,7 @@ fn any_scene() -> impl Strategy<Value = String> {
     })
 }
 
-/// Generates a point in, near, or very far from the picture. Its coordinates are fractions of the
+/// Generates a point in, near, or very far from the picture. Its coordinates are in units of the
 /// picture's width and height.
 fn any_point() -> impl Strategy<Value = (f64, f64)> {
     let part = || prop_oneof![8 => -0.5..1.5, 1 => Just(1e300), 1 => Just(-1e12)];
@@ -72,8 +72,9 @@ fn camera_of(scene: &Scene) -> CameraFacts {
 /// Returns the position in space of a handle of the first object. For a handle without a fixed
 /// position, such as one that depends on the camera, returns the object's centre.
 ///
-/// `held` is the scene before the drag. The camera's view axis meets the undragged checkerboard at
-/// a point. The checkerboard's handle moves up and down through this point.
+/// A checkerboard's handle lies where the camera's view axis meets the board. A drag moves it
+/// straight up or down with the board, so `held`, the scene before the drag, gives its place on the
+/// board.
 fn handle_position(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
     match (scene.objects[0].shape, held.objects[0].shape) {
         (Shape::Sphere(sphere), _) => sphere.center,
@@ -193,19 +194,18 @@ proptest! {
         let Ok(changed) = dragged(&text, &moved) else { return Ok(()) };
         let mut after = read(&changed);
         prop_assert_eq!(after.objects.len(), before.objects.len());
-        // The drag may have changed a value that has a name, and the camera may use this name, too.
-        // The handle is therefore compared with the pointer in the old camera, for which the drag
-        // was computed.
+        // The camera may use a name whose value the drag has changed. The drag was computed for the
+        // camera before it, so the handle is compared with the pointer as that camera sees them.
         after.camera = before.camera;
         let place = handle_position(&after, handle, &before);
         let found = project(&after, place);
         let message = format!("{changed}\n{handle} {word} {to}: {found}");
         match (handle, after.objects[0].shape) {
             ("radius", _) => {
-                // Two rays pass 3/4 pixel inside and outside of the silhouette. Only the ray inside
-                // hits the sphere. The inside lies towards the projection of the sphere's centre.
-                // If the centre is behind the eye, the inside lies in the opposite direction, and
-                // `side` is −1.
+                // The pointer must lie on the sphere's silhouette, so a ray 3/4 pixel further in
+                // hits the sphere and a ray 3/4 pixel further out does not. The inner side is
+                // towards the projection of the sphere's centre. If the centre is behind the eye,
+                // the inner side is in the opposite direction, and `side` is −1.
                 let CameraFacts { eye, w, .. } = camera_of(&after);
                 let side = (eye - place).dot(w).signum();
                 let inwards = (found - to).normalize_or_zero() * (0.75 * side);
@@ -235,8 +235,8 @@ proptest! {
         }
     }
 
-    /// A drag of the camera never makes a text invalid. It keeps the objects and the image, and an
-    /// orbit also keeps the distance from the `lookat` point.
+    /// A drag of the camera never makes a text invalid, and changes neither the objects nor the
+    /// image. An orbit keeps the distance of the eye from the `lookat` point.
     #[test]
     fn a_camera_drag_keeps_objects_and_image_and_an_orbit_its_distance(
         text in any_scene(), from in any_point(), to in any_point(),

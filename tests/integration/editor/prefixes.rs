@@ -87,10 +87,9 @@ fn ask_about_all(analysis: &Analysis<'_>) {
 
 sampled_and_exhaustive!(every_prefix_and_edit_of_an_example_gets_consistent_editor_answers);
 
-/// Queries an example at every second offset. Queries also the text that remains if the example is
-/// cut off at this offset. Then reads the example without a single byte. Finally, queries the
-/// example without eight characters in a row, because a user who rewrites a line leaves such a
-/// text.
+/// Queries an example, and each beginning of it, at every second offset. Reads the example with one
+/// byte removed. Queries it with eight successive characters removed, because a user who rewrites a
+/// line leaves such a text.
 fn every_prefix_and_edit_of_an_example_gets_consistent_editor_answers(effort: Effort) {
     for (index, text) in effort.first(3, examples()).enumerate() {
         let whole = sources(&text);

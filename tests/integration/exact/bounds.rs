@@ -120,7 +120,8 @@ fn memory(scene: &str, crop: &str) -> u64 {
     most >> 10
 }
 
-/// The memory for a hard pixel may exceed that for an easy pixel by at most 128 MiB.
+/// Measures the peak memory for a pixel that is hard to compute and for an easy one. They may
+/// differ by at most 128 MiB.
 ///
 /// In the first scene, nearly all objects are seen at one point of the hard pixel, so the program
 /// subdivides the pixel very often. Without a limit, this took 20 GB. In the second scene, the hard
@@ -201,7 +202,8 @@ fn a_pixel_takes_bounded_time() {
 }
 
 /// In each scene of `tests/exact`, the error bounds are at most 1e-9, and each pixel is the mean of
-/// its four quarters. A comment in the scene may limit the test to a part of the picture.
+/// its four quarters. If a scene has a comment `// crop`, only the area that the comment gives is
+/// tested.
 #[test]
 fn hard_scene_files_are_known_within_1e_9() {
     for path in scenes("tests/exact") {

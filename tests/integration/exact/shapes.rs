@@ -70,8 +70,8 @@ fn sphere_coverage_matches_the_area_of_an_ellipse() {
 
 #[test]
 fn board_coverage_from_above_matches_the_closed_form() {
-    // From the height 1, the pixel shows the area [−1, 1]² of the board: 2 × 2 squares of side 1,
-    // or more squares if they are smaller.
+    // In the first two rows, the eye is at the height 1 and the pixel shows the area [−1, 1]² of
+    // the board. Mirroring this area exchanges the two colours, so half of it is white.
     for (eye, square, expected) in [
         ("(0, 1, 0)", 1.0, 0.5),
         ("(0, 1, 0)", 0.125, 0.5),
@@ -79,9 +79,9 @@ fn board_coverage_from_above_matches_the_closed_form() {
         // The pixel shows x from −3/4 to 5/4 and z from −1/2 to 3/2. This is a whole period of s
         // along each axis, so both integrals of s are 0, and half of the pixel is white.
         ("(0.25, 1, 0.5)", 1.0, 0.5),
-        // Let s be 1 and −1 in alternate squares along an axis. The pixel shows x from −1/2 to 1,
-        // where the integral of s is 1 − 1/2, and z from −1/4 to 5/4, where it is −1/4 + 1 − 1/4.
-        // The area of this part of the board is (3/2)².
+        // Let s be 1 and −1 in alternate squares along an axis. The pixel shows the part of the
+        // board with x from −1/2 to 1 and z from −1/4 to 5/4. The integral of s over x is −1/2 + 1,
+        // and over z it is −1/4 + 1 − 1/4. The area of the part is (3/2)².
         ("(0.25, 0.75, 0.5)", 1.0, 0.5 + 0.5 * (0.5 * 0.5) / 2.25),
     ] {
         let camera = format!("eye {eye} direction (0, -1, 0) up (0, 0, -1) d 1");

@@ -339,8 +339,9 @@ fn render_never_overwrites_its_own_input() {
     }
 }
 
-/// The test creates a link to the input at the output path only after the program has checked this
-/// path.
+/// While a command renders or waits for its input, a link to one of its inputs is created at its
+/// output path. The command has already checked this path, so it must check it again before it
+/// writes.
 #[test]
 fn a_link_created_while_rendering_cannot_redirect_output_onto_an_input() {
     for (line, input, target, about) in [

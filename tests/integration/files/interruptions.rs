@@ -153,7 +153,8 @@ fn a_killed_first_save_leaves_a_complete_file_or_none() {
         let params = json!({ "text": text, "base": pinhole::scene::SMALLEST, "name": "a.scn" });
         page.request("studio/save", params);
         thread::sleep(Duration::from_millis(4 * delay));
-        // The last one has time to finish, however busy the machine is.
+        // With the longest delay, the process is killed only after it has created the file, however
+        // busy the machine is.
         while delay == LAST && !folder.path("a.scn").exists() {
             thread::sleep(Duration::from_millis(4));
         }
@@ -229,8 +230,8 @@ fn a_killed_in_place_write_leaves_the_file_or_its_copy_complete() {
     assert!(left > 0, "no try was in time");
 }
 
-/// A user may be allowed to write to a file of a group to which the user does not belong. The
-/// rewritten file then gets another group, which must not get the rights of the old one.
+/// A user may rewrite a file that belongs to a group of which the user is no member. The rewritten
+/// file then belongs to another group, which must not get the permissions that the old group had.
 #[test]
 fn rewriting_a_file_grants_no_rights_to_another_group() {
     use std::os::unix::fs::MetadataExt;
@@ -238,9 +239,9 @@ fn rewriting_a_file_grants_no_rights_to_another_group() {
     if !is_root() {
         return;
     }
-    // A user may give a file only to a group to which the user belongs. So the rewritten file keeps
-    // its group in the first case; in the second, it gets the user's group, and the permissions of
-    // the group are removed.
+    // A user may give a file only to a group to which the user belongs. In the first case, the user
+    // belongs to the file's group, so the rewritten file keeps it. In the second case, the file
+    // gets the user's own group, without any permissions for this group.
     for (owner, groups, after) in [
         (1234, "--groups=1235", (USER, 1235, 0o660)),
         (USER, "--clear-groups", (USER, USER, 0o600)),

@@ -164,8 +164,8 @@ fn a_file_changed_since_it_was_read_is_not_overwritten() {
         for (number, purpose) in [Purpose::Change(&original), again].into_iter().enumerate() {
             let changed = || {
                 files::write(&path, purpose, &AtomicBool::new(false), |out| {
-                    // Another program changes the file during the first write. It is then already
-                    // changed before the second write begins.
+                    // Another program changes the file during the first of the two writes. Before
+                    // the second write, the file already differs from the original.
                     if number == 0 {
                         meanwhile();
                     }

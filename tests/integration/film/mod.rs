@@ -259,9 +259,9 @@ fn a_small_file_of_a_huge_picture_is_refused() {
     assert!(bytes.len() < 1 << 20);
     let large = "it has 20000 × 20000 pixels, which are decoded to more than the 268435456 bytes that are read";
     assert_eq!(read_picture(&bytes).unwrap_err().to_string(), large);
-    // A limit on memory allows for four channels per pixel, although the file has only one. A
-    // channel takes one byte in memory if the file has 1 bit per channel, and two bytes if it has
-    // 16.
+    // The memory limit allows for four channels per pixel, although the file has only one. A
+    // channel needs one byte of memory if the file has 1 bit per channel, and two bytes if the file
+    // has 16.
     for (depth, size) in [(BitDepth::One, 4 * 6), (BitDepth::Sixteen, 8 * 6)] {
         let bytes = png(
             [3, 2],

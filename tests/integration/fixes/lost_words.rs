@@ -12,9 +12,9 @@ use pinhole::{
 
 use crate::random::Random;
 
-/// Spellings of units, separated by spaces, each row with the factor by which a number with this
-/// unit is multiplied. Lengths are thus compared in metres. Angles in degrees or radians keep their
-/// numbers; gons become degrees.
+/// Spellings of units, separated by spaces. Each row also has the factor by which a number with
+/// such a unit is multiplied before it is compared. So lengths are compared in metres, and gons
+/// become degrees. Degrees and radians have the factor 1, so their numbers are compared as written.
 const UNITS: [(&str, f64); 9] = [
     ("cm", 0.01),
     ("mm", 0.001),
@@ -204,10 +204,10 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
     if !lost.is_empty() && !is_listed {
         complaints.push(format!("numbers are lost: {lost:?}"));
     }
-    // Two words in a row, such as `look at`, may form a known word, `lookat`, if they are joined.
-    // The words alone do not show whether a fix has joined them, so both possibilities are tried
-    // for the last four such pairs in the text. The combination with the fewest lost and added
-    // names is used.
+    // A fix may join two successive words, such as `look at`, to a known word, `lookat`. The words
+    // alone do not show whether a fix has done so. Therefore, joining and not joining are both
+    // tried for each of the last four such pairs, and the way with the fewest lost and added names
+    // is used.
     const WAYS: i32 = 1 << 4;
     let read = |of| [true, false].map(|is_two| words(of, is_two).names);
     let (before, after) = (read(text), read(&fixed.text));
@@ -245,9 +245,9 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
 /// Returns the names of `before` that are not in `after`, and the names of `after` that are not in
 /// `before`.
 ///
-/// Two words in a row in `before` may form a known word if they are joined, such as `look at`. Bit
-/// k of `joins` says whether to assume that a fix has joined such a pair; k is the pair's number,
-/// counted backwards from the end of the text. The sign bit applies to all further pairs.
+/// A fix may have joined two successive names of `before`, such as `look at`, to a known word,
+/// `lookat`. Each bit of `joins` says whether this is assumed of one such pair. The lowest bit is
+/// for the last pair in the text; the sign bit is for all pairs beyond the other bits.
 fn unmatched_names(
     before: &[String],
     after: &[String],

@@ -44,8 +44,8 @@ fn fixes_of_syntax_slips_remove_their_problem_and_add_no_error() {
             let twice = format!("{token} {token}");
             for slip in ["", &twice, other, &format!("{token} {other}")] {
                 let wrong = format!("{}{slip}{}", &text[..start], &text[end..]);
-                // The parser does not report a missing value of a field; only the translation to a
-                // scene does. This problem is therefore left out.
+                // A missing value of a field is a problem that the parser does not report; only the
+                // translation to a scene does. Its fixes are therefore not tested here.
                 trial.apply_fixes(&sources(&wrong), |d, _| {
                     d.is_of_syntax && d.code != "pinhole::missing_value"
                 });

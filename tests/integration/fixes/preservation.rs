@@ -19,8 +19,8 @@ fn foreign() -> Vec<String> {
     names.into_iter().map(read).collect()
 }
 
-/// Returns each line of a file, and the rest of the file from each line on. Each of these texts
-/// begins differently, and the beginning may reveal of which language a text is.
+/// Returns each line of a file, and for each line the text from this line to the end. The first
+/// words of a text may reveal its language, so texts with many different beginnings are tested.
 fn pieces(text: &str) -> Vec<String> {
     let lines: Vec<&str> = text.lines().collect();
     let rest = (0..lines.len()).map(|at| lines[at..].join("\n"));
@@ -42,7 +42,8 @@ fn safe_fixes_keep_numbers_and_names_of_foreign_files() {
     assert_none(&complaints);
 }
 
-/// A fix may reveal a mistake that an error has hidden, but the number of errors must still fall.
+/// A fix may reveal a mistake that was not reported because of an earlier error. Even so, each fix
+/// must leave fewer errors than before.
 #[test]
 fn every_fix_of_a_foreign_file_leaves_fewer_errors() {
     let mut trial = Trial::default();

@@ -43,8 +43,8 @@ fn value() -> impl Strategy<Value = String> {
                     *open != "(" || !values.is_empty()
                 })
                 .prop_map(|(open, values)| format!("{open} {} )", values.join(" , ")));
-            // A list whose elements end with `,` and a line end, most of them with a comment in
-            // between.
+            // A list whose elements are on lines of their own. After the `,` of each element, there
+            // may be a comment.
             let remark = one_of("|\t//\tx|\t//\tof\tthe\tleft|\t/*\ty\t*/|\n//\town", '|');
             let explained = (one_of("(|max (", '|'), vec((inner.clone(), remark), 1..4)).prop_map(
                 |(open, values)| {

@@ -47,8 +47,9 @@ pub fn assert_formatter_laws(text: &str, formatted_text: &str) {
     }
     // Two empty lines in a row occur only within a comment.
     for (at, _) in formatted_text.match_indices("\n\n\n") {
-        // The characters `/*/` begin a comment and do not end it, so they are replaced before the
-        // search for `*/`.
+        // The text before the empty lines must end within a comment: it must contain a `/*` after
+        // its last `*/`. The characters `/*/` begin a comment and do not end it, so they are
+        // replaced before the search.
         let before = formatted_text[..at].replace("/*/", "/* ");
         assert!(
             before.rfind("/*") > before.rfind("*/"),

@@ -55,7 +55,8 @@ fn no_studio_message_ends_the_conversation_or_changes_the_file() {
         while page.read()["id"] != "last" {}
     });
     assert_eq!(folder.text("a.scn"), before);
-    // A text that is saved under another name becomes a new scene beside the file.
+    // Besides this file, the folder may contain new scenes: a text that is saved under another name
+    // is written to a new file.
     let names = folder.names();
     assert!(names.iter().all(|name| name.ends_with(".scn")), "{names:?}");
     let _: Value = page.respond("studio/x", json!({}));

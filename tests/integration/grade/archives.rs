@@ -57,8 +57,9 @@ fn a_zip_file_is_graded_as_a_class_and_no_entry_escapes_it() {
     ]);
     // The name is in code page 437, in which 0x81 is ü and 0x82 is é.
     patch(&mut file, b"fXnn/", b"f\x81nn/");
-    // Marks an entry as encrypted. A zip file has a header before the entry and one in the list of
-    // entries, each with a name and, before the name, flags.
+    // Marks an entry as encrypted, by a bit of its flags. A zip file has two headers for an entry:
+    // one before its contents, and one in the list of entries. Each contains the flags and, at a
+    // fixed distance, the name.
     for (head, flags) in [(30, 6), (46, 8)] {
         let name = b"dora/Xecret.png";
         let names: Vec<_> = (head..file.len() - name.len())
@@ -176,7 +177,7 @@ fn zip_bombs_are_rejected_at_the_stated_limits() {
         ("anna/a.png", &vec![0; (256 << 20) + 1]),
         ("ben/b.png", &right),
     ]);
-    // The headers of the zip file claim that its entry unpacks to ten bytes.
+    // Changes the headers of the first entry, so that they falsely announce ten bytes of contents.
     let length = ((256u32 << 20) + 1).to_le_bytes();
     let places: Vec<_> = (0..bomb.len() - 4)
         .filter(|&at| bomb[at..].starts_with(&length))

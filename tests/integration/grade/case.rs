@@ -14,7 +14,7 @@ use super::{
 /// A picture by a program with known mistakes.
 pub struct Case {
     pub title: String,
-    /// The program without the mistakes.
+    /// The program that renders the picture without any mistake.
     right: Program,
     pub text: String,
     pub mistakes: Vec<&'static Mistake>,

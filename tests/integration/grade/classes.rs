@@ -163,7 +163,7 @@ fn clones_of_github_classroom_are_a_class() {
             put(&folder, &[(&path, content)]);
         }
     }
-    // Cloning a repository gives its files arbitrary times, so an older file is not worse than a
+    // Cloning a repository gives its files arbitrary times, so an older file must be graded like a
     // newer one.
     age(&folder, "hw1-submissions/hw1-anna/render.png", 5);
     put(
@@ -379,9 +379,9 @@ fn a_folder_around_an_export_is_graded_as_the_export() {
         ("h/hw-submissions/hw-anna/x.png", "right.png"),
         ("h/hw-submissions/hw-anna/.git/HEAD", "ref"),
         ("h/hw-submissions/hw-ben/.git/HEAD", "ref"),
-        // In the folder `s`, the folders `anna` and `ben` belong to two students. The clone of a
-        // repository in the one, and the name of another student (`Li`) in the other, change
-        // nothing.
+        // In the folder `s`, the folders `anna` and `ben` belong to two students. The folder `anna`
+        // also contains the clone of a repository, and a file of `ben` is named after another
+        // student, `Li`. Neither of these must change which students are found.
         ("s/anna/tracer/x.png", "right.png"),
         ("s/anna/tracer/.git/HEAD", "ref"),
         ("s/ben/Li_3_assignsubmission_file_x.png", "red.png"),

@@ -31,7 +31,8 @@ fn class() -> Folder {
     for [name, arguments, _, _] in rows(PICTURES) {
         folder.told(&format!("render a.scn -o class/{name} {arguments}"), 0);
     }
-    // A PNG file can contain its scene. This picture is saved again, so that it contains no scene.
+    // A PNG file can contain its scene. This picture is decoded and saved again, so it must be
+    // graded without a scene in the file.
     let sky = folder.path("class/sky.png");
     image::open(&sky).unwrap().to_rgb8().save(&sky).unwrap();
     folder

@@ -120,7 +120,8 @@ fn gradescope_gets_a_score_only_where_it_is_known() {
         );
         for test in tests {
             assert_eq!(test["visibility"], "visible");
-            // A mistake may cost more than a test's share, so the points are those of the whole.
+            // A mistake may cost more points than one test's share of them, so the points are
+            // stated only for the whole submission.
             assert!(test.get("score").is_none() && test.get("max_score").is_none());
         }
         let failed = tests.iter().filter(|test| test["status"] == "failed");
@@ -309,8 +310,8 @@ fn a_crop_is_compared_with_the_part_that_is_named() {
         "render a.scn -o part.png --crop 4,3,10,12 --set sampler.method=exact",
         0,
     );
-    // A PNG file can state which crop of the picture it is. This picture is saved again, so that it
-    // contains no such statement.
+    // A PNG file can state which crop of the picture it is. This picture is decoded and saved again
+    // without this statement, so the commands cannot know the crop.
     let path = folder.path("part.png");
     image::open(&path).unwrap().to_rgb8().save(&path).unwrap();
     for command in ["grade a.scn part.png", "diff part.png a.scn"] {

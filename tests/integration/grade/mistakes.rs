@@ -31,7 +31,8 @@ enum Change {
 }
 
 impl Mistake {
-    /// Returns the name of the mistake in the title of a picture.
+    /// Returns the name that stands for the mistake in the title of a picture: the first of the
+    /// accepted answers.
     pub fn title(&self) -> &'static str {
         self.name.split('|').next().unwrap_or_default()
     }

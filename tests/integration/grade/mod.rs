@@ -32,9 +32,8 @@ use crate::{
 };
 
 /// Titles of pictures, one per line: correct pictures by every way of sampling, and pictures with
-/// the mistakes that students make. Each picture has as many samples per pixel as its mistake needs
-/// to be visible. For example, with 16 samples, noise at edges hides the use of the power 2.2
-/// instead of the sRGB curve.
+/// the mistakes that students make. Each picture has enough samples per pixel for its mistake to
+/// stand out from the noise; a mistake that changes the whole picture only slightly needs many.
 const PICTURES: &str = include_str!("pictures.txt");
 
 sampled_and_exhaustive!(the_mistakes_of_a_class_are_named);
@@ -113,8 +112,9 @@ fn wrongly_judged(case: &Case) -> Option<String> {
 
 sampled_and_exhaustive!(random_samples_that_all_pixels_share_are_no_other_mistake);
 
-/// If all pixels have the same few random samples, these lie on average beside the middle of a
-/// pixel. All edges move by that, but nothing in the scene is wrong.
+/// If all pixels have the same few random samples, the mean position of these samples is not the
+/// middle of the pixel. All edges in the picture are shifted by the difference, but the scene
+/// itself is right. So only a shift may be reported.
 fn random_samples_that_all_pixels_share_are_no_other_mistake(effort: Effort) {
     let names = ["figure", "street", "lens"].into_iter();
     let cases = names.flat_map(|name| [4, 8, 16].map(|samples| (name, samples)));
@@ -160,8 +160,9 @@ fn answer(text: &str, sets: &[&str], file: &[u8]) -> Value {
     Value::Object(verdict.unwrap().to_json())
 }
 
-/// Judges a part of a picture that is mirrored and has one more mistake. The mirrored part shows
-/// what the scene has on the picture's other side.
+/// Judges a picture with two mistakes: it is mirrored, and a sphere has a wrong radius. Only a part
+/// of the picture is handed in. What this part shows is on the other side of the right picture,
+/// outside of the same part.
 #[test]
 fn a_part_of_a_mirrored_picture_with_one_more_mistake() {
     let scene = |sets: &[&str]| {

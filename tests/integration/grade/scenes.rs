@@ -6,12 +6,11 @@ use super::textbook::{
     Axes, Behind, Encoding, Object, Program, Roots, Sampling, Shape, Squares, Visible,
 };
 
-/// Returns the scene `name`, as a correct program and as text. `figure` is the assignment's
-/// picture, turned a little. `street` has the same names of objects, a closer camera, a far plane
-/// and more objects. The other scenes are variants of the figure for mistakes that need them: a
-/// near plane that clips objects, another lens, a low window, a box with different colours for its
-/// faces, a ball sunk into the floor, a leaning triangle, the floor as the first object, or no
-/// roll.
+/// Returns the scene `name`, as a correct program and as text. `figure` is figure 9.9 with a roll
+/// of 10°. `street` has the same names of objects, a closer camera, a far plane and more objects.
+/// The other scenes are variants of `figure` for mistakes that need them: a near plane that clips
+/// objects, another lens, a low window, a box with different colours for its faces, a ball sunk
+/// into the floor, a leaning triangle, the floor as the first object, or no roll.
 pub fn scene(name: &str) -> (Program, String) {
     let (mut program, mut text) = match name {
         "street" => (street(), STREET.to_owned()),
@@ -81,8 +80,7 @@ box House { center (-2.25, 1, -3)  size (1.5, 2, 2)  color #8b4513 }
 ";
 
 fn figure() -> Program {
-    // The triangle is that of the assignment, given by its vertices: the two ends of the base and
-    // the apex.
+    // The triangle of figure 9.9, given by the two ends of its base and its apex.
     let (base, height) = (1.0, 15_f64.sqrt() / 2.0);
     let normal = dvec3(0.3, 0.0, 1.0).normalize();
     let right = DVec3::Y.cross(normal);

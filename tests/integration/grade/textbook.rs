@@ -45,7 +45,7 @@ pub enum Encoding {
     None,
     /// Encodes the light by the curve of sRGB, and then the result once more, which is a mistake.
     Twice,
-    /// Raises the light to the power 1/x, where x is the contained number.
+    /// Raises the light to the power 1/x, where x is the variant's value.
     Power(f64),
 }
 
@@ -88,8 +88,8 @@ pub enum Squares {
     /// negative odd number is −1, so the program regards it as even.
     Remainder,
     /// Both coordinates are rounded down. The program regards the square's number as odd if the
-    /// coordinates leave different remainders after division by 2. The remainder of a negative odd
-    /// coordinate is −1, which differs from 1.
+    /// coordinates leave different remainders after division by 2. This fails if one coordinate is
+    /// odd and positive and the other odd and negative: their remainders 1 and −1 differ.
     Remainders,
     /// The number of a square is the sum of its two coordinates, each rounded to the nearest
     /// integer.
@@ -113,18 +113,17 @@ pub enum Squares {
     /// The board is turned by 45 degrees. The number of a square is the sum of its coordinates on
     /// the turned board, each rounded down.
     Turned,
-    /// The number of a square is regarded as odd if at least one of the two coordinates, rounded
-    /// down, is odd.
+    /// A square gets the first colour only if both coordinates, rounded down, are even.
     BothEven,
-    /// The number of a square is regarded as odd if sin(x) · sin(z) is negative, where x and z are
-    /// its coordinates in units of the square's side.
+    /// A square gets the second colour if sin(x) · sin(z) is negative, where x and z are the
+    /// coordinates in units of the square's side.
     Sines,
 }
 
 /// Roots of the quadratic equation of a sphere, a·t² + b·t + c = 0, that a student's program tries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Roots {
-    /// Both roots, the nearer one first. This is correct.
+    /// Both roots. The nearest one that is visible is used, which is correct.
     Both,
     /// Only the nearer root.
     Lesser,
@@ -134,8 +133,8 @@ pub enum Roots {
     TimesA,
 }
 
-/// Mistake of a student's program in the camera's axes or rays. The axes are u (right), v (up) and
-/// w (against the view direction).
+/// The way in which a student's program computes the camera's axes and rays. The axes are u
+/// (right), v (up) and w (against the view direction).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Axes {
     /// The axes and rays are correct.
@@ -157,8 +156,8 @@ pub enum Axes {
     LongRays,
     /// All rays have the same direction, −w, i.e. the view direction.
     Parallel,
-    /// All rays are parallel. The window is moved to `lookat` and enlarged, so that the camera sees
-    /// it at the same angle.
+    /// All rays are parallel. The window is moved from the view plane to `lookat` and enlarged, so
+    /// that it still fills the same field of view.
     ParallelFromLookat,
 }
 
@@ -171,8 +170,8 @@ pub enum Sampling {
     Random,
     /// Each cell of a grid contains one sample at a random point.
     Jittered,
-    /// Sample i of n is at the point (i/n, φ₂(i)), where φ₂ is the radical inverse in base 2. The
-    /// points are equal in every pixel.
+    /// Sample i of n is at the point ((i + 1/2)/n, φ₂(i)), where φ₂ is the radical inverse in base
+    /// 2. The points are equal in every pixel.
     Hammersley,
     /// The samples of a pixel are at independent, uniformly distributed points, which are equal in
     /// every pixel. The number is the seed of the random numbers.
@@ -207,8 +206,8 @@ pub struct Program {
     pub sampling: Sampling,
     /// Number of samples per pixel, which must be a square number.
     pub samples: u32,
-    /// Whether the program uses the correct height of the window as its width. The window's height
-    /// is then wrong, too, because pixels stay square.
+    /// Whether the program confuses the window's height with its width: the window is as wide as it
+    /// should be high. Its height is then wrong, too, because pixels stay square.
     pub is_wide: bool,
     /// Whether the program's window is square even if the picture is not, so that objects are
     /// distorted.
@@ -220,7 +219,8 @@ pub struct Program {
     pub axes: Axes,
     /// Factor by which all light is multiplied; 1 is correct.
     pub gain: f64,
-    /// Whether the program compares near and far with distances from the eye instead of depths.
+    /// Whether the program compares the distances of the near and the far plane with the distances
+    /// of surfaces from the eye, instead of with their depths.
     pub clips_distances: bool,
     /// Whether the program forgets to test one of a triangle's edges.
     pub misses_edge: bool,
@@ -357,9 +357,9 @@ impl Program {
         }
     }
 
-    /// Decodes a channel of a colour, from 0 to 1, to light. Normally, the result is encoded to the
-    /// same channel again. If `encoding` is [`Encoding::None`] or [`Encoding::Twice`], it is
-    /// encoded to another one, because these encodings are mistakes.
+    /// Decodes a channel of a colour, from 0 to 1, to light. If the program encodes light by a
+    /// power, uses the inverse power; otherwise, uses the curve of sRGB. So the mistakes
+    /// [`Encoding::None`] and [`Encoding::Twice`] change colours.
     fn decode(&self, part: f64) -> f64 {
         match self.encoding {
             Encoding::Power(power) => libm::pow(part, power),

@@ -40,8 +40,8 @@ fn said(_: &Sources, found: &Diagnostic) -> String {
     format!("{}: {} | {label} | {help}", code(found), found.message)
 }
 
-/// Makes a fix by the function `remove`, which removes the part of `text` in brackets. Returns the
-/// new text, followed by the title of the fix. The title mentions removed comments.
+/// Returns `text` without the part in brackets, followed by the title of the fix that removes this
+/// part. The fix is made by `remove`. Its title mentions removed comments.
 fn without(text: &str, remove: fn(String, Span, &Sources) -> Fix) -> String {
     let (start, end) = (text.find('[').unwrap(), text.find(']').unwrap() - 1);
     let sources = sources(&text.replace(['[', ']'], ""));

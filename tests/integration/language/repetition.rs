@@ -186,8 +186,8 @@ fn fixes_in_repeated_objects_keep_their_index() {
 }
 
 /// A mistake after the `for` of a block does not affect the next block. A repeated checkerboard
-/// causes only one warning. A later `let` may have the name of an index, even if there are
-/// overrides.
+/// causes only one warning. A `let` after a block can define the name of the block's index, also if
+/// values are overridden by `--set`.
 #[test]
 fn a_repetition_does_not_affect_the_text_around_it() {
     for (text, set, expected) in [

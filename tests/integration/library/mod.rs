@@ -181,7 +181,8 @@ fn a_later_setting_replaces_an_earlier_one_of_the_same_target() {
         texts(&frame),
         ["--set #1: h=3", "--set #2: camera.eye=(0, 3, 9)"]
     );
-    // In every order, the scene is that of all settings together.
+    // Adding settings one by one must give the same scene as reading the text with all of them at
+    // once.
     let steps = [
         "B.center=(5, 5, 5)",
         "B.size=(2, 2, 2)",

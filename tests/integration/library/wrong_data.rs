@@ -1,5 +1,6 @@
-//! Tests that data which no text of a scene could produce are reported as errors wherever a program
-//! can pass them. They never produce a picture that looks right.
+//! Tests of data that no text of a scene can produce, but that another program can pass to the
+//! library. The library refuses such data, or reports an error; it never makes a picture that looks
+//! right.
 
 use std::io::Cursor;
 
@@ -276,7 +277,8 @@ fn pixels_that_do_not_fit_their_part_of_a_picture_are_refused() {
             .count()
     };
     assert_eq!(put("1,0,3,2", 6), 6);
-    // The second part and the third continue in the next row, or below the last one.
+    // All these parts are refused: the number of pixels does not fit the part, or the part extends
+    // beyond the picture of 4 × 3 pixels.
     for (part, count) in [
         ("1,0,3,2", 3),
         ("2,0,3,2", 6),

@@ -14,8 +14,8 @@ camera { eye (0, 1, 5)   lookat (0, r, 0) }
 sphere Ball { center (0, r, 0)  radus 2*r }
 ";
 
-/// The text that the scene must have after `radus` is fixed, `r` is renamed, and the text is
-/// formatted.
+/// Text that the scene must have at the end. The script in Emacs fixes the field `radus`, renames
+/// `r`, and formats the text.
 const EDITED: &str = "let height = 1
 camera { eye (0, 1, 5)  lookat (0, height, 0) }
 sphere Ball { center (0, height, 0)  radius 2 * height }

@@ -75,7 +75,8 @@ fn a_frame_has_the_pixels_of_a_render() {
         let (text, size) = match name {
             "exact" => (SCENE.replace("multi_jittered", "exact"), [83, 61]),
             "scattered" => (SCENE.replace("multi_jittered", "scatter"), [83, 61]),
-            // With 2000 samples per pixel, a slice of work is only a small part of the picture.
+            // The server computes a picture in slices of work. With 2000 samples per pixel, a slice
+            // is only a small part of the picture, so this case tests many slices.
             "many" => (SCENE.replace("per_pixel 9", "per_pixel 2000"), [83, 61]),
             "wide" => (sized("100_000", "2"), [100_000, 2]),
             _ => (SCENE.to_owned(), [83, 61]),
@@ -92,7 +93,8 @@ fn a_frame_has_the_pixels_of_a_render() {
 fn a_frame_of_an_outdated_text_is_refused() {
     let mut client = LocalClient::with(SCENE);
     let old = client.request("pinhole/frame", json!({}));
-    // This step of the server publishes the diagnostics but does not complete the frame.
+    // One step of the server publishes the diagnostics, but does not complete the frame. Then the
+    // text is changed.
     assert!(client.transport.step() && !client.has_answered(old));
     let changed = SCENE.replace("olive", "teal");
     client.change(2, json!({ "text": changed }));

@@ -78,7 +78,6 @@ impl LocalClient {
         client
     }
 
-    /// Returns whether a request has been answered.
     pub fn has_answered(&self, id: i32) -> bool {
         let said = self.transport.said.iter();
         let said = said.map(|text| serde_json::from_str::<Value>(text).expect("JSON"));

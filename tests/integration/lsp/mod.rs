@@ -1,6 +1,6 @@
-//! Tests of the language server. Some start the program and talk to it over pipes (`session`,
-//! `neovim`, `emacs`). Others use a server in their own process, which they can advance in small
-//! steps.
+//! Tests of the language server. The tests in `session`, `neovim` and `emacs` start the program and
+//! talk to it over pipes. All other tests use a server in their own process, which they can advance
+//! in small steps.
 
 pub mod client;
 mod emacs;

@@ -77,8 +77,8 @@ const ASKED: &[Typed] = &[
     ],
 ];
 
-/// Completions that are offered during typing, as rows of [`Typed`]. They are tested in Neovim 0.11
-/// with the configuration from the documentation for editors.
+/// Completions that Neovim offers while the user types, as rows of [`Typed`]. They are tested only
+/// with Neovim 0.11 or later and the configuration that the documentation for editors gives.
 const OFFERED: &[Typed] = &[
     // While a word is typed, nothing is inserted before the user chooses a completion.
     ["$0\ncamera {}", "s menu p h", "sph"],

@@ -112,7 +112,7 @@ fn an_oversized_or_unfinished_message_ends_the_server_with_a_reason() {
     for (length, expected) in [
         ("99999999999999", "is announced"),
         ("2000000000", "is announced"),
-        // A message of the announced length is allowed, but the input ends after two bytes of it.
+        // The header announces an allowed length. The input ends after two bytes of the message.
         ("1000000000", "after 2 of 1000000000 bytes"),
     ] {
         let mut client = Client::start();

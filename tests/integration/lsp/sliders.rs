@@ -143,8 +143,9 @@ fn a_slider_never_reaches_a_value_that_is_an_error() {
             "sphere for i < a / 4 { center (i, 0, 0) }",
             json!([null, null, 0.1, [-1.0, 9.0]]),
         ),
-        // Reading a long text again for each tried number would take too long, so the slider has no
-        // limits.
+        // To find the limits of a number that is used in a formula, the server reads the text with
+        // several values of the number. This would take too long for so long a text, so the slider
+        // has no limits.
         (
             "1",
             &format!("{many}sphere {{ radius a / 2 }}"),
@@ -168,9 +169,9 @@ fn a_slider_never_reaches_a_value_that_is_an_error() {
 fn definitions_take_slider_ranges_from_comments_or_fields() {
     let no_number = |it: &str| format!("`{it}` in the range is no number");
     let alone = || Some("a range is for a number or an angle that stands alone".to_owned());
-    // Each case has three parts: the value and the comment, which follow `=` in the text; the
-    // minimum, the maximum and the step of the slider; and the reason if the range in the comment
-    // is refused.
+    // Each case has three parts. The first is the text after `let a = `, i.e. a value and a
+    // comment. The second is the minimum, the maximum and the step of the slider. The third is the
+    // reason why the range in the comment is refused, or `None`.
     let cases = [
         ("1 // [0.5:0.1:2] how large", json!([0.5, 2.0, 0.1]), None),
         ("-2 //[-3:3]", json!([-3.0, 3.0, 0.1]), None),

@@ -358,8 +358,8 @@ fn a_drag_with_a_step_snaps_to_round_numbers() {
                 .parse()
                 .expect("a number")
         });
-        // In the picture, 1 m is 90 pixels. The new x must be a multiple of 0.01 m, and within 0.02
-        // m of the x to which the pointer moved.
+        // In the picture, 1 m is 90 pixels, so the pointer moves the centre to x = 0.123 + `by`/90.
+        // The new x must be a multiple of 0.01 m and differ from this by less than 0.02 m.
         match x {
             None => assert!(f64::abs(by) < 0.5, "{by}: {found}"),
             Some(x) => {

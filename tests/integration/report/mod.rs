@@ -55,7 +55,8 @@ fn a_report_prints_a_table_and_one_recommendation() {
         .map(|method| row(method.name()))
         .into_iter()
         .partition(|row| row[1] == "bends");
-    // With few samples, `scatter` leaves pixels empty. The line of such a method has no slope yet.
+    // With few samples, `scatter` leaves pixels empty. The line through its measured points then
+    // bends, so no slope is given for it.
     assert!(bent.iter().all(|row| row[2..4] == ["–", "–"]), "{text}");
     assert!(bent.iter().any(|row| row[0] == "scatter"), "{text}");
     assert!(rows.len() >= 5 && text.contains("\nbends: "), "{text}");
@@ -169,7 +170,8 @@ fn the_inner_edges_of_a_box_are_edges_and_no_board() {
     let faces = shares("colors (tan, wheat, peru) }");
     assert!(faces[0] > plain[0], "{faces:?} {plain:?}");
     assert_eq!([plain[1], faces[1]], [0.0; 2]);
-    // On a board, the inner edges are still edges.
+    // A board behind the box must not reduce the number of edge pixels: the edges between the box's
+    // faces are not attributed to the board.
     let on_board = shares("colors (tan, wheat, peru) } checkerboard {}");
     assert!(on_board[0] >= faces[0] && on_board[1] > 0.0, "{on_board:?}");
 }

@@ -121,7 +121,7 @@ fn a_slope_needs_a_factor_of_four_and_a_line_that_does_not_bend() {
     }
 }
 
-/// A bend that is no larger than the noise of the runs is none.
+/// A bend of the line is reported only if it is larger than the noise of the runs.
 #[test]
 fn noise_does_not_bend_a_line() {
     let run = |error| Run {
@@ -267,9 +267,10 @@ fn progress_reaches_1_when_a_sample_count_is_requested_twice() {
     let control = Control::default();
     let measured = measure(&subject(), &read(SCENE), &request, &control, &tell).unwrap();
     assert!(measured.exact.is_none());
-    // Each of the two runs measures 1 and 4 samples per pixel, the first run in this order. So the
+    // The request names 1 and 4 samples per pixel, and each of the two runs measures both. The
+    // first run measures 1 sample first. All runs together measure 10 samples per pixel, so the
     // progress is 1/10 after the first measurement, and 5/10 after the second. The second run may
-    // measure in another order.
+    // begin with 4 samples.
     let told = told.into_inner();
     assert_eq!((told.len(), &told[..2]), (4, &[0.1, 0.5][..]));
     assert!(told[2] > 0.5 && told[3] == 1.0, "{told:?}");

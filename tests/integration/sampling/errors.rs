@@ -139,8 +139,7 @@ fn squared_errors_match_theory() {
         assert!(off.abs() < 4.0, "{n}: {off}");
         // For n points of a Latin hypercube, the variance of the fraction of points in the edge's
         // half-plane is at most that of n − 1 independent points (Owen 1997, "Monte Carlo variance
-        // of scrambled net quadrature"). It may be much smaller, so only an upper limit of `off` is
-        // tested.
+        // of scrambled net quadrature"). It may be much smaller, so `off` has only an upper limit.
         let off = beyond(Method::NRooks, &|edge| {
             variance_of_independent_points(n - 1, edge)
         });

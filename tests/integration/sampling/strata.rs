@@ -135,8 +135,8 @@ fn halton_is_the_shifted_halton_sequence() {
     let n = 4_u64.pow(4) * 3_u64.pow(3);
     let points = points(Method::Halton, n, 0, [3, 5]);
     let origin = points[0];
-    // Returns `offset` − `origin`, modulo the pixel's side, in units of 2^−53. The error is at most
-    // one unit.
+    // Returns how far `offset` is beyond `origin`, in units of 2^−53. If the result would be
+    // negative, the pixel's side is added. The result is rounded down to a whole unit.
     let from = |offset: f64, origin: f64| {
         (((fraction(offset) + (1 << 54) - fraction(origin)) & ((1 << 54) - 1)) >> 1) as u64
     };

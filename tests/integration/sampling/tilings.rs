@@ -1,5 +1,5 @@
-//! [`tilings`] lists, for each sampling method, divisions of a pixel into equal cells. Tests that
-//! each cell of such a division contains one sample.
+//! Tests that each cell of a tiling contains one sample. A tiling is a division of a pixel into
+//! equal cells; [`tilings`] lists the tilings of each sampling method.
 
 use pinhole::sampling::tilings;
 

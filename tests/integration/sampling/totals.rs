@@ -75,8 +75,8 @@ fn half_a_sample_per_pixel_gives_a_checkerboard() {
 
 #[test]
 fn scattered_counts_follow_the_poisson_distribution() {
-    // Each of the 40 × 25 pixels has 20 points on average. So the χ² statistic has 999 degrees of
-    // freedom. It is computed for several seeds.
+    // The numbers of points in the 1000 pixels (40 × 25) add up to 20 000, so the χ² statistic has
+    // 999 degrees of freedom. It is computed for several seeds.
     let area = Area::whole(40, 25);
     let mut empty = 0;
     for seed in 0..20 {

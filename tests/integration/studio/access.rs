@@ -213,7 +213,7 @@ fn a_connection_without_the_token_is_closed() {
     ] {
         assert_eq!(studio.admitted(wrong).err(), Some(unknown), "{wrong}");
     }
-    // The host does not answer binary messages and close messages.
+    // The host admits no client that sends a binary message or a close message instead of a token.
     for wrong in [
         Message::binary(token.clone().into_bytes()),
         Message::Close(None),
@@ -306,7 +306,7 @@ fn malformed_requests_and_frames_do_no_harm() {
     let (_folder, studio) = studio();
     let start = format!("GET / HTTP/1.1\r\nHost: {}\r\n", studio.host());
     let upgrade = upgrade(&studio);
-    // The bytes are the head of a text frame of 64 MiB, followed by a part of the frame's text.
+    // A text frame that announces 64 MiB and breaks off after the first MiB.
     let head = [&[0x81, 0xff][..], &(64_u64 << 20).to_be_bytes(), &[0; 4]].concat();
     let huge = [upgrade.as_bytes(), &head, &vec![b'y'; 1 << 20]].concat();
     for wrong in [

@@ -120,7 +120,7 @@ impl Drop for Studio {
     }
 }
 
-/// The end of a WebSocket that belongs to a page.
+/// The page's side of a WebSocket connection.
 pub struct Page(pub WebSocket<TcpStream>);
 
 impl Transport for Page {

@@ -137,7 +137,8 @@ fn pages_are_independent_and_do_not_block_each_other() {
     assert_ne!(open(&mut first, &wrong), json!([]));
     assert_eq!(open(&mut second, SCENE), json!([]));
     second.ask("studio/png", json!({ "text": SCENE }));
-    // A cancelled picture ends at once, so the host is ready for the next one.
+    // The first cancellation names another request, so it has no effect. The second cancels the
+    // picture, so the next one is accepted.
     first.notify("$/cancelRequest", json!({ "id": long + 100 }));
     first.notify("$/cancelRequest", json!({ "id": long }));
     assert_eq!(first.response(long)["error"]["code"], -32800);

@@ -109,7 +109,9 @@ fn a_save_that_fails_changes_nothing() {
     assert_eq!(folder.names(), ["a.scn"]);
 }
 
-/// Tests each way to protect a file that the system has. Only the last way also works against root.
+/// Tests the two ways to protect a file: permissions, and the system's attribute `i` (immutable).
+/// Root may ignore permissions, but not the attribute. A protection that has no effect in the
+/// test's environment is skipped.
 #[cfg(unix)]
 #[test]
 fn a_forbidden_save_names_the_file_the_reason_and_a_remedy() {
@@ -291,7 +293,8 @@ fn a_browser_opens_with_a_single_use_token_unless_no_open_is_given() {
         env::var("PATH").unwrap()
     );
     let opened = folder.path("opened");
-    // The text is longer than the socket buffers of a page that does not read.
+    // The text is longer than the socket buffers, so the host cannot send it completely to a page
+    // that does not read its messages.
     let long = "// a long scene\n".repeat(1 << 19);
     folder.write("a.scn", &long);
     for (arguments, is_opened) in [("studio --no-open", false), ("studio a.scn", true)] {
@@ -383,8 +386,8 @@ fn a_signal_ends_studio_within_a_second_and_closes_its_pages() {
     }
 }
 
-/// Drafts, i.e. unsaved texts of pages, survive restarts of the program until their text is saved
-/// or they are discarded.
+/// Drafts are unsaved texts of pages. They survive restarts of the program. A draft is deleted when
+/// its text is saved, or when the user discards it.
 #[test]
 fn drafts_survive_a_restart_until_they_are_saved_or_discarded() {
     let folder = Folder::with([("a.scn", SCENE)]);

@@ -11,8 +11,8 @@ use crate::{
     table::rows,
 };
 
-/// The horizon passes close to the centres of pixels, either level or along their diagonals. The
-/// error bound of every pixel must be at most 1e-9.
+/// The horizon passes close to the centres of a row of pixels or, with a roll of 45°, of the pixels
+/// on a diagonal of the picture. The error bound of every pixel must be at most 1e-9.
 #[test]
 fn pixels_crossed_by_the_horizon_are_known_within_1e_9() {
     for side in [8, 9, 65] {
