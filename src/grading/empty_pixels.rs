@@ -49,9 +49,10 @@ pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Op
         }
     }
     let both = share * share;
-    // Pairs of neighbours that share a pixel are not independent, and each pair shares a pixel with
-    // six others. So the number of empty pairs varies more than a Poisson variable. The quotient of
-    // its variance and its mean is `more`, so both numbers are divided by `more`.
+    // Pairs that share a pixel are not independent, and each pair shares a pixel with six others.
+    // So the number of empty pairs has a larger variance than a Poisson variable of the same mean.
+    // `more` is the quotient of the variance and the mean. The found number and the expected number
+    // are both divided by it, so that the bound for a Poisson variable applies.
     let more = 1.0 - both + 6.0 * share * (1.0 - share);
     if !is_chance(empty_pairs / more, pairs * both / more) {
         return None;

@@ -106,8 +106,9 @@ impl Prediction<'_> {
                 share = (share + above / below).clamp(1e-6, 1.0);
             }
         }
-        // Probability densities are converted to the light that viewers see. So predictions for
-        // different encodings are comparable.
+        // Predictions may assume different encodings, so they decode the observed light
+        // differently. Their probability densities are converted to densities of the light that
+        // viewers see, so that they can be compared.
         let stretch = |light: &f64| {
             let own = Curve::Correct.step(self.curve.seen(*light));
             libm::log(own / self.curve.step(*light))

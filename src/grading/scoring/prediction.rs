@@ -151,7 +151,8 @@ fn gain(observed: &[DVec3], mean: &[DVec3], variance: &[DVec3], function: &Tabul
         .iter()
         .fold([0.0; 2], |sums, pair| [0, 1].map(|i| sums[i] + pair[i]));
     let gain = seen / mean;
-    // Programs that divide by a wrong number of samples are mostly wrong by a power of 2.
+    // Programs that divide by a wrong number of samples usually multiply light by a power of 2. So
+    // an estimate close to such a power is replaced by it.
     let power = libm::exp2(libm::log2(gain).round());
     let is_power = (gain / power - 1.0).abs() < POWER;
     match gain {
@@ -339,9 +340,9 @@ impl<'a> Prediction<'a> {
             .collect()
     }
 
-    /// Returns the standard deviations of the differences of all cells, channel by channel, as if
-    /// each cell had one sample. Each is the greatest standard deviation of a sample in the cell
-    /// and its neighbours, so that it also holds if edges are displaced by a cell.
+    /// Returns the standard deviations of the differences of all cells, channel by channel, if
+    /// there is one sample per cell. The greatest deviation among a cell and its neighbours is
+    /// used, so that it is large enough even if edges are displaced by a cell.
     pub fn deviations(&self) -> Vec<f64> {
         let cells = 0..self.observed.len();
         let deviations = cells.flat_map(|at| {

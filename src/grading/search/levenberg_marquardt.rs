@@ -20,9 +20,9 @@ pub struct Fitted {
     pub numbers: Vec<f64>,
     /// Sum of the absolute differences that remain.
     pub left: f64,
-    /// Standard deviation of each number, computed from the standard deviations of the picture's
-    /// differences that [`fit`] was given. It is meaningful only after a round that minimises
-    /// Huber's loss.
+    /// Standard deviation of each fitted number. It follows from the standard deviations of the
+    /// differences, which are an argument of [`fit`]. It is meaningful only after a round that
+    /// minimises Huber's loss.
     pub errors: Vec<f64>,
 }
 
