@@ -16,9 +16,8 @@ use crate::{
     scene::Scene,
 };
 
-/// Threshold below which a mistake is not reported: the fraction of the picture's squared error
-/// that the mistake explains. A larger value would hide small mistakes. A smaller one would report
-/// mistakes that explain almost nothing.
+/// Minimum fraction of the picture's squared error that a reported mistake explains. A larger value
+/// would hide small mistakes. A smaller one would report mistakes that explain almost nothing.
 const LEAST_EXPLAINED: f64 = 1e-5;
 
 /// Minimum number of wrong fields in one object that makes a hypothesis implausible. Few students
@@ -32,7 +31,7 @@ const IMPLAUSIBLE_FIELDS: usize = 3;
 const LEAST_DISPLACEMENT: f64 = 0.4;
 
 /// Maximum fraction of the picture's squared error that guesses may leave unexplained. Guesses that
-/// leave more are not reported: the picture then mostly shows something else, and they would
+/// leave more are not reported: the picture then mostly shows something else, so the guesses would
 /// mislead.
 const USELESS_REST: f64 = 0.5;
 

@@ -172,7 +172,7 @@ pub enum Effect {
     },
 }
 
-/// Returns whether two colours differ by less than 1.5 8-bit steps in each channel.
+/// Returns whether two colours differ by less than 1.5 steps of 8-bit sRGB in each channel.
 pub fn is_near(one: [f64; 3], other: [f64; 3]) -> bool {
     let step = |light| Curve::Correct.step(light);
     (0..3).all(|i| (one[i] - other[i]).abs() < 1.5 * f64::max(step(one[i]), step(other[i])))

@@ -35,7 +35,7 @@ pub struct Score {
     pub chi_squares: Vec<f64>,
     /// Sum of the squared differences between the picture and the prediction.
     pub squares: f64,
-    /// Part of the sum `squares` that noise and rounding explain.
+    /// Part of the sum of the squared differences that noise and rounding explain.
     pub noise: f64,
     /// Variance of a pixel's error relative to the variance of one sample: 1/n for n samples per
     /// pixel.

@@ -24,9 +24,9 @@ pub struct Strays {
     pub pixels: Vec<usize>,
     /// Sum of the squared differences of the pixels in `pixels`.
     square: f64,
-    /// Pixels that should mix several colours. For each: its index, the part of its squared error
-    /// that neither rounding nor the uncertainty of the predicted mean can explain, and the
-    /// expected variance of one sample.
+    /// Pixels that should mix several colours. An entry contains the pixel's index, the part of its
+    /// squared error that neither rounding nor the uncertainty of the predicted mean can explain,
+    /// and the expected variance of one sample.
     edges: Vec<(usize, f64, f64)>,
 }
 

@@ -45,13 +45,14 @@ const CODED_ID: &str = "averaged_encoded";
 /// width is not named, because a slight blur may hide the effect of another mistake.
 const LEFT_BY_FILTER: f64 = 0.5;
 
-/// Factors by which an estimated pixel width greater than 1 is multiplied. Of the products, the
-/// most likely width is taken. More factors would find the width more precisely, but take longer.
+/// Factors by which an estimated pixel width greater than 1 is multiplied. The most likely of the
+/// products is used as the width. More factors would find the width more precisely, but take
+/// longer.
 const WIDTHS: [f64; 4] = [0.7, 0.8, 0.9, 1.0];
 /// Least width of pixels that are reported as too wide, in pixels. A smaller estimate is raised to
 /// it, so that it differs from the correct width, 1.
 const LEAST_WIDE: f64 = 1.1;
-/// Widths, in pixels, that are tried for pixels that are too narrow. The most likely one is taken.
+/// Widths, in pixels, that are tried for pixels that are too narrow. The most likely width is used.
 /// A few values suffice, because edges determine a narrow width only roughly.
 const NARROW_WIDTHS: [f64; 3] = [0.25, 0.5, 0.7];
 

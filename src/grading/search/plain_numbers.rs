@@ -15,9 +15,9 @@ use crate::{
     scene::Scene,
 };
 
-/// Displacement of an edge, in pixels, that rounding a number may cause in the first round of
-/// rounding. Each further round allows less, so numbers become longer. With a larger value, shorter
-/// numbers are tried first, but more of them are rejected.
+/// Maximum displacement of an edge, in pixels, that rounding a number may cause in the first round
+/// of attempts. Each further round allows less, so numbers become longer. With a larger value,
+/// shorter numbers are tried first, but more of them are rejected.
 const TENTH: f64 = 0.1;
 /// Maximum number of rounds of rounding. Each round allows a quarter of the displacement of the
 /// round before. The fifth allows 0.0004 pixels, so more rounds would hardly change a picture.
