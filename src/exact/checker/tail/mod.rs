@@ -74,10 +74,10 @@ const LATER_TERMS_SHARE: f64 = 0.05;
 /// pixel's budget, and need not be precise, because the budget only stops computations that take
 /// too long.
 const CROSSING_WORK: f64 = 1.0 / 16.0;
-/// Half of the approximate time to compute one Fourier mode, in units of about 50 ns. Multiplied by
-/// the number n of the last mode, it gives the work charged to the pixel's budget, because only odd
-/// numbers have modes. A rough value is enough, because the budget only stops computations that
-/// take too long.
+/// Half of the approximate time to compute one Fourier mode, in units of about 50 ns. It is
+/// multiplied by the number n of the last mode, and only half of the numbers up to n, the odd ones,
+/// have modes. The product is charged to the pixel's budget. A rough value is enough, because the
+/// budget only stops computations that take too long.
 const MODE_WORK: f64 = 1.0 / 4.0;
 
 /// Computes the alternating sum Σ (−1)^j·X over all crossings j of an edge with lines of the board.
