@@ -208,7 +208,8 @@ fn with_mistakes(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     } else {
         (Kind::Unknown, Vec::new(), mistakes)
     };
-    // Guesses do not explain the picture, so the objects are then judged by the correct scene.
+    // If only guesses are reported, they do not explain the picture. The objects are then judged by
+    // the correct scene.
     let known = if is_named { last } else { &correct };
     let (mut objects, is_background_right) = objects::judged(judge, known);
     for object in mistakes.iter().filter_map(|mistake| mistake.object) {

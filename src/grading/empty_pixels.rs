@@ -17,8 +17,8 @@ use crate::film::Film;
 /// pixel. Returns `None` if no pixel lacks a sample.
 ///
 /// A pixel is suspected if it has the colour `empty` and the exact picture has another colour
-/// there. The suspicion is dropped in two cases. First, if more of the suspects are neighbours than
-/// chance explains. Second, if there are more suspects than expected: with n samples per pixel on
+/// there. The suspicion is dropped in two cases. First, if suspects are neighbours more often than
+/// by chance. Second, if there are more suspects than expected: with n samples per pixel on
 /// average, a fraction e⁻ⁿ of the pixels has none. Here n is estimated from the noise of the other
 /// pixels.
 pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Option<Film> {

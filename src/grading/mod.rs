@@ -202,8 +202,8 @@ impl Reference {
             return self.judge_opaque(&picture.film, jpeg, cancel);
         };
         // First, a transparent picture is judged as it appears on black. If it is wrong there, or
-        // if no pixel is opaque, its colours are judged without alpha. An exception is a picture
-        // whose alpha is 0 everywhere, because nothing of it is visible.
+        // if no pixel is opaque, its colours are judged without alpha. But if alpha is 0
+        // everywhere, nothing is visible, so the colours are not judged.
         let verdict = self.judge_opaque(&picture.film, jpeg, cancel)?;
         let is_right = matches!(verdict.kind, Kind::Right | Kind::Noise);
         if is_right && opacity.range[1] == 1.0 {

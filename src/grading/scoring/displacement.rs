@@ -169,9 +169,9 @@ impl Prediction<'_> {
         !is_exact || others.count() < CHANCE
     }
 
-    /// Returns the mean ratio of a squared error to the variance of one sample, over the pixels
-    /// that mix several colours. With n independent samples per pixel, it is about 1/n. It is at
-    /// most 1.
+    /// Returns the sum of the squared differences divided by the sum of the variances of one
+    /// sample, both over the pixels that mix several colours. With n independent samples per pixel,
+    /// the ratio is about 1/n. It is at most 1.
     pub fn share(&self) -> f64 {
         let (mut squares, mut variances) = (0.0, 0.0);
         for at in (0..self.observed.len()).filter(|&at| !self.is_flat(at)) {

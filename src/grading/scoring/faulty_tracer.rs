@@ -127,8 +127,8 @@ impl FaultyTracer {
             let column = (x - part.x) as usize;
             let is_beside = is_flat[column] || column > 0 && is_flat[column - 1];
             // The squares of a board may be half as large as a cell, and all tested places may then
-            // show one colour by chance. So the test is made only beside a cell of one colour. If
-            // there are few samples, taking all of them costs less than the test.
+            // show one colour by chance. So the test is made only beside a cell of one colour. It
+            // is not made if there are few samples, because taking all of them costs less.
             let mut probes = corners.iter().chain(places.iter().step_by(EACH));
             let is_first = |probe: &DVec2| self.color(corner + *probe) == first;
             if is_beside && places.len() > 8 && probes.all(is_first) {

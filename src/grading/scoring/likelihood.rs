@@ -133,7 +133,7 @@ impl Prediction<'_> {
             beyond += DVec3::select(has_several, square - one.rounding, DVec3::ZERO).element_sum();
         }
         // Noise that is less than that of 100 000 samples per pixel cannot be distinguished from
-        // rounding.
+        // rounding. The number of samples is then unknown.
         let is_known = beyond > 1e-5 * of_samples;
         Score {
             likelihood,
@@ -151,8 +151,8 @@ impl Prediction<'_> {
     /// deviation. `score` is the score of `self`.
     pub fn observed_share(&self, score: &Score, other: &Self) -> [f64; 2] {
         let mut deviations = self.deviations();
-        // Each variance is the greater one of the two predictions. But if they assume different
-        // encodings, their variances are not comparable, so those of `self` are used.
+        // The greater of the two predictions' variances is used. But if the predictions assume
+        // different encodings, their variances are not comparable, so those of `self` are used.
         let is_alike = self.curve == other.curve;
         if is_alike {
             let others = deviations.iter_mut().zip(other.deviations());

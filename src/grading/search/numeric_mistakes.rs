@@ -138,7 +138,7 @@ fn suspected(candidate: &Candidate, suspects: &[usize]) -> Vec<Parameter> {
 
 /// Returns for each given colour the one that the picture shows instead: the median over the pixels
 /// in which only the given colour is predicted. Keeps the given colour if there are no such pixels.
-/// `numbers` has three channels for each given colour, from 0 to 255.
+/// `numbers` contains three channels for each given colour, from 0 to 255.
 fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
     let color = |own: &[f64; 3]| {
         let light = DVec3::from(Color { srgb: *own }.to_linear());

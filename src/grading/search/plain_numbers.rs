@@ -39,7 +39,7 @@ pub fn plain(judge: &Judge, candidate: &Candidate) -> Candidate {
     shortened(judge, &own).unwrap_or(own)
 }
 
-/// Replaces fitted numbers by the scene's own as long as the picture is explained as well.
+/// Replaces fitted numbers by the scene's own if the picture is then explained equally well.
 fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
     let (level, scene) = (judge.fitting(candidate), judge.scene);
     let is_explained = judge.explains(candidate);

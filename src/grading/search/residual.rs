@@ -6,9 +6,9 @@ use crate::grading::{
     scoring::{Displacement, Prediction, work},
 };
 
-/// Reciprocal of the fraction of a picture's pixels that may be wrong although a hypothesis is
-/// correct. It is used if the prediction is not exact, i.e. if it was sampled or the picture is a
-/// JPEG. Chosen by trial on pictures with known mistakes.
+/// Divisor of the number of pixels: up to 1/4000 of the pixels may be wrong although a hypothesis
+/// is correct. It is used if the prediction is not exact, i.e. if it was sampled or the picture is
+/// a JPEG. Chosen by trial on pictures with known mistakes.
 const PIXELS_PER_MISS: usize = 4000;
 
 /// Distance from an edge, in pixels, within which a wrong pixel is attributed to the edge. It
@@ -30,10 +30,10 @@ const IGNORED: f64 = 0.06;
 /// pixel has one sample. For n samples per pixel, it is divided by n. Chosen by trial.
 const IGNORED_WITH_ONE_SAMPLE: f64 = 0.06;
 
-/// Coefficients a, b and c of the greatest displacement of a single object's edges that is ignored,
-/// in pixels. For n samples per pixel, it is a + b/√n, or a + c/√n in a JPEG, because coding adds
-/// noise. Samples on a regular grid are 1/√n apart, so they may displace an edge parallel to the
-/// grid by up to 0.5/√n.
+/// Coefficients a, b and c of a limit in pixels. If the edges of a single object are displaced by
+/// less than the limit, this is ignored. For n samples per pixel, the limit is a + b/√n, or a +
+/// c/√n in a JPEG, because coding adds noise. Samples on a regular grid are 1/√n apart, so they may
+/// displace an edge parallel to the grid by up to 0.5/√n.
 const IGNORED_OF_OBJECT: [f64; 3] = [0.12, 0.5, 0.7];
 
 /// Threshold of the displacement of all edges of a JPEG, in pixels to the right or down. A larger
