@@ -174,8 +174,8 @@ impl LineCrossings {
         let mut j = done;
         while left > 0 {
             let now = left.min(CHUNK);
-            // The compiler vectorises this loop if it runs over whole vectors. The values beyond
-            // `now` are therefore computed, too, and then set to 0.
+            // The compiler vectorises this loop only if it runs over whole vectors. So up to
+            // `LANES` − 1 values too many are computed, and then set to 0.
             let mut values = [0.0; CHUNK];
             let filled = now.next_multiple_of(LANES);
             let t = self.reduced_at(&Double::from_f64(j)).hi;

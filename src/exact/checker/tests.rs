@@ -390,8 +390,8 @@ fn the_widest_views() {
                 let found = view.board().alone(&polygon);
                 let (expected, left) = brute_limit(&view, &polygon, most);
                 let error = (found.value - expected).abs();
-                // `brute_limit` is exact only for a focal length of 0. The finite focal length
-                // displaces lines.
+                // `brute_limit` is exact only for a focal length of 0. A greater focal length
+                // displaces lines, so the assertion tolerates an error proportional to it.
                 assert!(
                     error <= found.bound + left + 1e-11 + 1e3 * focal,
                     "{degrees} {focal:e} {y}: {found:?}, not {expected} to {left:e}: {error:e}"

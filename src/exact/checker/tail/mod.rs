@@ -61,10 +61,9 @@ const MAX_DIRECT: f64 = 20_000.0;
 /// Fourier mode. A bound of the remaining crossings or modes is added to the error. Adding 300,000
 /// crossings or modes takes a few milliseconds.
 const MAX_TERMS_ADDED: f64 = 300_000.0;
-/// Fraction of an edge's tolerance. If the sum over the edge's crossings is certainly at most this
-/// fraction of the tolerance, the sum is taken as 0, and its upper bound is added to the error.
-/// Skipped Fourier modes may use up the same fraction. The fractions of all kinds of errors must
-/// add up to less than 1.
+/// Fraction of an edge's tolerance up to which the sum over the edge's crossings is neglected: it
+/// is taken as 0, and its upper bound is added to the error. Skipped Fourier modes may use up the
+/// same fraction. The fractions of all kinds of errors must add up to less than 1.
 const SKIPPED_SHARE: f64 = 0.25;
 /// Fraction of an edge's tolerance that may be used up by leaving out terms of the edge's series
 /// ([`EdgeSeries`]): those that are not summed by Fourier modes. Not critical: with 0.0125 or 0.2,
