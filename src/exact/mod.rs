@@ -406,8 +406,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let widths = (0..N).map(|i| greatest[i] - least[i]);
         ExactPixel {
             mean: array::from_fn(|i| least[i].midpoint(greatest[i])),
-            // The ends of the range are at most 1, and each has been rounded twice, so four
-            // roundings are added.
+            // The ends of the range are at most 1. Each has two roundings, so four are added.
             bound: 0.5 * widths.fold(0.0, f64::max) + 4.0 * UNIT,
         }
     }

@@ -158,10 +158,10 @@ pub(super) fn sum(
     sum
 }
 
-/// Returns how many terms the series need for a truncation error of the polygon's integral of at
-/// most `limit`, and a bound on this error. If no number of terms is enough, returns the one with
-/// the smallest bound. `nearest` is the smallest depth in the polygon, and `area` its area in the
-/// picture.
+/// Returns the number of terms of the series with which the truncation error of the polygon's
+/// integral is at most `limit`, and a bound on this error. If no number of terms is enough, returns
+/// the number with the smallest bound. `nearest` is the smallest depth in the polygon, and `area`
+/// is the polygon's area in the picture.
 fn terms(
     board: &Homography,
     nearest: f64,

@@ -254,8 +254,8 @@ impl Homography {
         } else {
             1.0 / level
         };
-        // The floor's coordinates N/L, as N times the depth 1/L. If one overflows, the point is
-        // treated as lying on the horizon.
+        // The floor's coordinates N/L are computed as N times the depth 1/L. If one overflows, the
+        // point is treated as lying on the horizon.
         let places = floor.map(|n| n * depth);
         if depth.is_infinite() || !places.iter().all(|place| place.is_finite()) {
             let depth = f64::INFINITY;

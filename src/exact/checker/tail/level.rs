@@ -47,8 +47,8 @@ pub(super) fn sum(
     };
 
     let step = all.alternating_step();
-    // The two numbers e^(iφ), where φ is the phase of mode 1 at the first crossing, and at the
-    // place of the crossing that would follow the last one.
+    // e^(iφ) at two places: at the first crossing, and where the next crossing after the last one
+    // would be. φ is the phase of mode 1 there.
     let ends = [Double::from_f64(0.0), all.count].map(|j| cis(all.reduced_at(&j).hi * PI));
     let rotations = ends.map(square);
     let mut phases = ends;

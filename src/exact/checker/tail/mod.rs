@@ -57,9 +57,9 @@ const MODE_TERMS: usize = 3;
 /// Fourier modes are tried. Adding 20,000 crossings takes 60 µs, 3 ns each. Not critical: with 5000
 /// or 80,000, the measured running time changes by less than 10 %.
 const MAX_DIRECT: f64 = 20_000.0;
-/// Maximum number of an edge's crossings that are added one by one, and maximum number n of a
-/// Fourier mode. A bound of the remaining crossings or modes is added to the error. Adding 300,000
-/// crossings or modes takes a few milliseconds.
+/// Maximum number of an edge's crossings that are added one by one. It is also the maximum number n
+/// of a Fourier mode. A bound of the remaining crossings or modes is added to the error. Adding
+/// 300,000 crossings or modes takes a few milliseconds.
 const MAX_TERMS_ADDED: f64 = 300_000.0;
 /// Fraction of an edge's tolerance up to which the sum over the edge's crossings is neglected: it
 /// is taken as 0, and its upper bound is added to the error. Skipped Fourier modes may use up the
@@ -132,7 +132,7 @@ pub(super) fn sum(
         let rest = receding::sum_from(all, crossing, series, share, budget);
         // `rest` is the sum from `crossing` to the horizon, in which the first term is positive. In
         // the whole sum, crossing j has the sign (−1)^j. If the edge ends before the horizon, the
-        // second `rest`, from the edge's end on, is subtracted from the first.
+        // sum from its end to the horizon is subtracted.
         let odd = crossing.floor().1 != (end == 1);
         sum.value += if odd { -rest.value } else { rest.value };
         sum.bound += rest.bound;

@@ -18,8 +18,8 @@ use crate::math::Double;
 /// measured. It decides after how many crossings the Fourier modes take over.
 const MODE_COST: f64 = 4.0;
 /// Number n up to which each Fourier mode is computed; a later mode is skipped if its bound is
-/// small. Measured: with 7, a picture of a horizon takes up to 20 % longer; with 123, it is not
-/// faster.
+/// small. Measured: with 7, a picture of a horizon takes up to 20 % longer; with 123, it does not
+/// become faster.
 const FIRST_MODES: f64 = 31.0;
 /// Fraction of an edge's tolerance that may be used up by leaving out all Fourier modes beyond the
 /// last computed one. The tolerance is divided among several kinds of errors. This kind gets the
