@@ -18,15 +18,16 @@ use super::{
 };
 
 /// Minimum area of a cell, a polygon between lines, in square pixels. A smaller cell is not cut any
-/// further, because slivers that exist only by rounding would double in number with each line. Its
-/// whole area is added to the error bound, because rounding may put the point at which its colour
-/// is determined outside the cell. A square of this area has sides of 2⁻²³ pixels, about 10⁹ unit
-/// roundoffs.
+/// further. Rounding can create slivers that do not exist in exact arithmetic, and each line could
+/// double their number. The whole area of such a cell is added to the error bound, because rounding
+/// may put the point at which its colour is determined outside the cell. A square of this area has
+/// sides of 2⁻²³ pixels, about 10⁹ unit roundoffs.
 const MIN_AREA: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// Factor k of an area limit k·n·e, in square pixels, for a cell (a polygon between lines) with n
-/// vertices, where e is the error of the values of a line's form a·x + b·y + c. If the cell's area
-/// exceeds the limit, the cell's centre is certainly on the correct side of the line.
+/// Factor k of the area limit k·n·e, in square pixels. Here n is the number of vertices of a cell
+/// (a polygon between lines), and e is the error of the values of a line's form a·x + b·y + c. If
+/// the cell's area exceeds the limit, the cell's centre is certainly on the correct side of the
+/// line.
 ///
 /// Derivation: the form has the same sign at all vertices, and its value at the centre is the mean
 /// of those at the vertices. If the centre's value is at most e, those at the vertices are at most
@@ -39,8 +40,8 @@ const MAX_AREA_PER_HEIGHT: f64 = 3.0;
 /// 2, because the larger of |a| and |b| is about 1.
 const ROUNDING: f64 = 8.0 * f64::UNIT;
 
-/// Returns the fraction of a sub-pixel's area that shows each colour. The sub-pixel is that of
-/// `regions`, and `lines` cut it into cells.
+/// Returns the fraction of a sub-pixel's area that shows each colour. `lines` cut the sub-pixel
+/// into cells, and `regions` collects the cells.
 pub fn shares(lines: &[BoundaryLine], mut regions: Regions) -> Shares {
     let mut polygons = vec![PIXEL.to_vec()];
     let mut worst = 0.0_f64;

@@ -75,9 +75,10 @@ pub fn visible(
     visible
 }
 
-/// Replaces the content of `out` by the curves that may separate colours in the sub-pixel, where
-/// only `candidates` may be seen. Returns `true` if `out` has all of these curves. Returns `false`
-/// as soon as more than `max_curves` unequal curves are found or the budget is spent.
+/// Replaces the content of `out` by the curves that may separate colours in the sub-pixel. Only the
+/// objects in `candidates` may be seen there. Returns `true` if `out` contains all of these curves.
+/// Returns `false` as soon as more than `max_curves` unequal curves are found or the budget is
+/// spent.
 pub fn curves(
     world: &World,
     sub_pixel: SubPixel,
@@ -88,10 +89,9 @@ pub fn curves(
 ) -> bool {
     out.clear();
     let boundaries = Boundaries::<Double>::new(world, sub_pixel, candidates, budget);
-    // A source is an object or a pair of objects. A source is in `imprecise` if one of its curves
-    // has too large an error in double-double. It is in `incomplete` if two of its surfaces have no
-    // intersection in double-double, so that only the highest precision decides whether they have
-    // one.
+    // A source is an object or a pair of objects. `imprecise` lists the sources with a curve whose
+    // error is too large in double-double. `incomplete` lists the sources with two surfaces that do
+    // not seem to intersect in double-double. Only the highest precision decides whether they do.
     let (mut imprecise, mut incomplete) = (Vec::new(), Vec::new());
     let mut incomplete_curves = Vec::new();
     let mut room = max_curves;
@@ -110,16 +110,16 @@ pub fn curves(
             merge_equal_curves(out);
             room = out.len() + max_curves;
         }
-        // `room` is the length of `out` above which equal curves are merged again. After a merge,
-        // it is the number of unequal curves plus `max_curves`. If it exceeds `2 * max_curves`,
+        // Equal curves are merged again when `out` is longer than `room`. After a merge, `room` is
+        // the number of unequal curves plus `max_curves`. So if `room` exceeds `2 * max_curves`,
         // there are more than `max_curves` unequal curves, and the search stops.
         if room > 2 * max_curves || budget.is_spent() {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
     };
-    // Silhouettes come before pairs, so that the search stops early in a heap of objects: their
-    // silhouettes alone are more than `max_curves`.
+    // Silhouettes come before pairs. So the search stops early if there are very many objects,
+    // because their silhouettes alone exceed `max_curves`.
     let outlines = boundaries.outlines(&mut take);
     if outlines.is_break() || boundaries.pairs(&mut take).is_break() {
         return false;
@@ -259,8 +259,9 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         self.objects[at].get_or_init(|| {
             self.charge_big_curve();
             let object = T::object(&self.world.geometry, self.candidates[at].object);
-            // The world's cache cannot keep all prepared objects if there are more candidates than
-            // slots in the cache. Each object may then have to be prepared again.
+            // If there are more candidates than slots in the world's cache of prepared objects, the
+            // cache cannot keep all of them. An object may then have to be prepared again, so this
+            // work is charged.
             let is_prepared_again = self.candidates.len() > CACHE_SLOTS;
             match *object {
                 Object::Convex(_) if is_prepared_again => self.budget.charge(PREPARATION_WORK),

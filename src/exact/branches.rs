@@ -141,10 +141,10 @@ impl ConicGraph {
         let root = root * side;
         let at = Double::from_f64(x);
         let minus = b.times(&at).plus(e).negated().hi;
-        // Of the two equal formulas for y (`ConicGraph`), (−b ± √Δ)/C and g/(−b ∓ √Δ), the one
-        // whose sum does not cancel is used. If Δ is 0, neither sum cancels. The first formula is
-        // used then, since at a rounded end of the branch Δ may in truth be slightly negative, and
-        // the second formula would be wrong there.
+        // The conic has two equal formulas for y (`ConicGraph`): (−b ± √Δ)/C and g/(−b ∓ √Δ). The
+        // one whose sum does not cancel is used. If Δ is 0, neither sum cancels, and the first
+        // formula is used: at the end of a branch, x is rounded, so the exact Δ may be slightly
+        // negative, and the second formula would then be wrong.
         if minus * side >= 0.0 || root == 0.0 {
             (minus + root) / c.hi
         } else {
@@ -155,8 +155,7 @@ impl ConicGraph {
     }
 
     /// Returns the point at `x` of the conic's branch with the sign `side` (1 or −1), computed in
-    /// double-double. The result also has the root ±√Δ ([`ConicGraph`]) at the point, with the sign
-    /// `side`.
+    /// double-double. Also returns the root ±√Δ ([`ConicGraph`]) there, with the same sign.
     fn end_in_double(&self, x: f64, side: f64) -> ArcEnd<Double> {
         let [a, b, c, d, e, f] = &self.factors;
         let [p, q, r] = &self.delta;
@@ -277,8 +276,8 @@ struct ArcEnd<T> {
 struct Tangents {
     /// Position of the control point relative to the arc's start.
     control: DVec2,
-    /// Square of the arc's weight. The weight is that of the control point if the arc is written as
-    /// a rational quadratic Bézier curve whose end points have the weight 1.
+    /// Square of the arc's weight. If the arc is written as a rational quadratic Bézier curve whose
+    /// end points have the weight 1, the weight of its control point is the arc's weight.
     w2: f64,
     /// Maximum error of the area between the arc and its chord.
     off: f64,
@@ -291,10 +290,10 @@ impl Tangents {
         // The chord and the two tangents are the sides of a triangle. Let κ − 1 be the sum of the
         // absolute values of the gradient's terms, divided by the gradient's length. The computed
         // gradient has a relative error of κ roundings, so the direction of each tangent has an
-        // error of κ roundings, in radians. This error changes the triangle's area by half the
-        // square of the tangent's side times the error. If the control point moves along a tangent,
+        // error of κ roundings, in radians. If a side of length l turns by a small angle φ, the
+        // triangle's area changes by at most l²·φ/2. If the control point moves along a tangent,
         // the triangle's area and the weight change in opposite directions, so that the area
-        // between arc and chord changes no more than the triangle's.
+        // between arc and chord changes no more than the triangle's area.
         //
         // The square of the weight is the quotient of two values of the conic's quadratic part Q.
         // The area between arc and chord grows no faster than the weight. A value of Q has two
@@ -436,9 +435,9 @@ impl Section {
         // Points of the two arcs with the same curve parameter are compared. Their heights are
         // measured in y from the direction of this arc's chord. If the weights are equal, a point
         // of each arc is the same weighted mean of that arc's three control points, so the heights
-        // differ by at most the largest difference between control points. A difference in x adds
-        // at most itself times the slope of the steepest tangent. A difference in weight moves a
-        // point by at most this difference times the point's distance from the control point.
+        // differ by at most the largest difference between control points. A difference in x, times
+        // the slope of the steepest tangent, is added. A difference in weight, times the point's
+        // distance from the control point, is the most by which the point moves.
         //
         // Rounding may move the control point of a narrow arc along the arc, where the area hardly
         // depends on it. The error of a point is less than the sum of two terms. One is eight times

@@ -26,9 +26,9 @@ const NEAR_PARABOLA: f64 = 0.36;
 const MAX_LINES: f64 = 12.0;
 /// Maximum total area of the segments (between arc and chord) of an arc's two halves, divided by
 /// the area of the whole arc's segment. A larger quotient shows that numbers are too large or too
-/// small to represent the arc: it is not halved, and its segment is added to the error bound. The
-/// exact quotient is 1/4 for a parabola and less for a hyperbola. For an ellipse, it is at most
-/// 0.37, if the arc is half of the ellipse. The constant is about 2 · 0.37.
+/// small to represent the arc. The arc is then not halved, and its segment is added to the error
+/// bound. The exact quotient is 1/4 for a parabola and less for a hyperbola. For an ellipse, it is
+/// at most 0.37, if the arc is half of the ellipse. The constant is about 2 · 0.37.
 const MAX_HALVES_SHARE: f64 = 0.75;
 
 /// An arc of a conic: the rational quadratic Bézier curve with weights 1, w and 1.

@@ -20,8 +20,8 @@
 //!    there (`region`). Hidden boundaries do no harm, because both sides of them get the same
 //!    colour. (Catmull, "A hidden-surface algorithm with anti-aliasing", 1978, integrates a pixel's
 //!    polygons this way; conics and the board are added here.)
-//! 4. Areas have closed forms: `conic_segment` has the area between an arc and its chord. `checker`
-//!    integrates a checkerboard over a region.
+//! 4. Areas have closed forms. `conic_segment` computes the area between an arc and its chord;
+//!    `checker` integrates a checkerboard over a region.
 //!
 //! The error bound is the sum of the errors of all steps: rounding, decisions that remained
 //! uncertain, and the truncation of infinite sums.
@@ -76,17 +76,17 @@ const DEFAULT_TOLERANCE: f64 = 9e-10;
 const MAX_CURVES: usize = 12;
 /// Number by which the maximum number of curves in a square part of a pixel grows with each
 /// quartering. Curves that still pass through the same small part are unlikely to be separated in
-/// smaller ones, so further quartering hardly helps. Measured on a heap of objects, compared with
-/// the time for 4: two thirds of it with 1, and four times as long with 16.
+/// smaller ones, so further quartering hardly helps. Measured: with 1, a heap of objects takes two
+/// thirds of the time; with 16, it takes four times as long.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// Maximum number of times per pixel that an already computed part of the pixel is quartered to
 /// reduce its error bound. While the pixel's bound exceeds the tolerance, the part with the largest
 /// bound comes first. Near a point that a few curves share, each quartering reduces the bound to a
 /// quarter; 16 of them reduce it by a factor of 2^32.
 const MAX_QUARTERINGS: usize = 16;
-/// Maximum memory of a pixel's queued parts, in bytes, without temporary memory. Above it, no part
-/// is quartered any more, and the areas of parts that are not computed are added to the error
-/// bound. A smaller maximum would cause this error more often.
+/// Maximum memory of a pixel's queued parts, in bytes. Temporary memory for computing a part is not
+/// included. Above the maximum, no part is quartered any more, and the areas of parts that are not
+/// computed are added to the error bound. A smaller maximum would cause this error more often.
 const MAX_MEMORY: usize = 64 << 20;
 /// Minimum side, in pixels, of a square part of a pixel that is quartered because too many curves
 /// pass through it. The area of a smaller part is added to the error bound instead; it is less than
@@ -104,8 +104,8 @@ const SLABS_WORK: f64 = 60.0;
 /// Work charged per pixel that shows only a few squares of a checkerboard, in units of about 50 ns.
 const BOARD_PIXEL_WORK: u64 = 10;
 
-/// A computed pixel. Each colour has N values from 0 to 1, by default its three channels in linear
-/// light, and the pixel has the mean of each value.
+/// A computed pixel. Each colour is described by N values from 0 to 1, by default its three
+/// channels in linear light. The pixel contains the mean of each value over its area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactPixel<const N: usize = 3> {
     /// Mean of each value over the pixel's area.
@@ -198,8 +198,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         self
     }
 
-    /// Returns the work spent so far, in units of about 50 ns. The same pixels take the same work
-    /// on every machine.
+    /// Returns the work spent so far, in units of about 50 ns. The same pixels require the same
+    /// work on every machine.
     pub fn work(&self) -> u64 {
         self.work.spent()
     }
@@ -262,9 +262,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
 
     /// Calls `show` with each area that shows only one object, and with each other pixel, together
     /// with the fraction of the area that shows each object. The world must be made by
-    /// [`World::by_object`], so that palette indices stand for objects. Above the work limit, the
-    /// object in a pixel's middle gets the whole pixel. Returns whether the errors of all fractions
-    /// are at most 1e-6.
+    /// [`World::by_object`], so that palette indices stand for objects. If the work limit is
+    /// exceeded, each remaining pixel is treated as showing only the object in its middle. Returns
+    /// whether the errors of all fractions are at most 1e-6.
     pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
         let mut is_exact = true;
         let mut curves = Vec::new();
@@ -406,7 +406,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let widths = (0..N).map(|i| greatest[i] - least[i]);
         ExactPixel {
             mean: array::from_fn(|i| least[i].midpoint(greatest[i])),
-            // The ends of the range are at most 1, and each has been rounded twice.
+            // The ends of the range are at most 1. Each has two roundings, so four are added.
             bound: 0.5 * widths.fold(0.0, f64::max) + 4.0 * UNIT,
         }
     }

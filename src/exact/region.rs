@@ -164,8 +164,8 @@ impl<'a> Regions<'a> {
         found
     }
 
-    /// Adds to the error bound an area that may be counted in a wrong region or in none. `area` is
-    /// a fraction of the sub-pixel's area.
+    /// Adds to the error bound an area that may have been added to the wrong region, or to none.
+    /// `area` is a fraction of the sub-pixel's area.
     pub fn add_doubtful_area(&mut self, area: f64) {
         self.shares.bound += area;
     }
@@ -187,8 +187,9 @@ impl<'a> Regions<'a> {
         shares
     }
 
-    /// Returns shares with the bound 1, for a sub-pixel that is not computed. Only the object in
-    /// the middle of the sub-pixel is examined, and each of its two colours gets half of the area.
+    /// Returns shares with the bound 1, for a sub-pixel that is not computed. The whole area is
+    /// given to the object in the middle of the sub-pixel. If the object has two colours, each gets
+    /// half of the area.
     pub fn unknown(&self) -> Shares {
         let (object, _) = self.object_at(DVec2::ZERO);
         let background = [self.world.background(); 2];

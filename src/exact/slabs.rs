@@ -39,7 +39,7 @@ const MIN_DISTANCE: f64 = 1.0 / (1u64 << 43) as f64;
 /// the measured bounds change by at most 2 % and the running time by at most about 10 %.
 const MIN_WIDTH: f64 = 1.0 / (1u64 << 48) as f64;
 /// Maximum number of slabs (vertical strips) of a sub-pixel, done or queued, in addition to the
-/// initial ones. With so many slabs, none is cut any more, and the area between curves that may
+/// initial ones. At this number, no slab is cut any more, and the area between curves that may
 /// cross is added to the error bound. Not critical: with 1024 or 16,384, the measured bounds change
 /// by at most 2 % and the running time by at most 10 %.
 const MAX_ADDED_SLABS: usize = 4096;
@@ -54,8 +54,8 @@ const MAX_STEPS: usize = 60;
 /// unit roundoffs. Products and sums contribute at most another eight.
 const ROUNDING: f64 = 16.0 * f64::UNIT;
 
-/// Returns the fraction of a sub-pixel's area that shows each colour. The sub-pixel is that of
-/// `regions`, and `curves` cut it.
+/// Returns the fraction of a sub-pixel's area that shows each colour. `curves` cut the sub-pixel
+/// into regions, and `regions` collects these.
 pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     let (mut lines, mut graphs) = (Vec::new(), Vec::new());
     let mut cuts = vec![-0.5, 0.5];
@@ -238,7 +238,8 @@ fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, r
     let mut last = Ordering::Equal;
     // The crossing is searched by the Illinois variant of false position: if the same end of the
     // interval is kept twice, the value at that end is halved. Since gap_out < 0 ≤ gap_in, the
-    // estimate does not leave the interval; if rounding puts it at an end, halving moves the next.
+    // estimate does not leave the interval. If rounding puts the estimate at an end, the halving
+    // moves the next estimate away from it.
     for _ in 0..MAX_STEPS {
         let at = inside - gap_in * (inside - out) / (gap_in - gap_out);
         let gap_at = gap(at);

@@ -31,8 +31,8 @@ pub const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 pub struct Tolerance<'a> {
     /// Tolerance that is the same for all pixels, in steps of 8-bit sRGB.
     pub steps: f64,
-    /// Bound on the error of each pixel's colour, in linear light, row by row. It is converted to
-    /// steps and added to `steps`. `None` if the pictures have no error bounds.
+    /// Bound on the error of each pixel's colour, in linear light, row by row. The tolerance of a
+    /// pixel is increased by its bound. `None` if the pictures have no error bounds.
     pub bounds: Option<&'a [f32]>,
 }
 
@@ -56,8 +56,8 @@ pub struct Comparison {
     /// Root mean square of the differences over all channels of all pixels, in linear light, from 0
     /// to 1.
     pub rmse: f64,
-    /// The largest difference. If several are equally large, the first one is reported, row by row
-    /// from the top.
+    /// The largest difference. Of several equal ones, it is the topmost, and in its row the
+    /// leftmost.
     pub largest: Largest,
     /// Number of pixels that differ by more than the tolerance.
     pub beyond: u64,
@@ -83,7 +83,7 @@ pub struct Largest {
     pub b: f64,
 }
 
-/// Two pictures of different sizes, which cannot be compared.
+/// Error: two pictures have different sizes, so they cannot be compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("the sizes differ: {} × {} pixels and {} × {}", .0[0], .0[1], .1[0], .1[1])]
 pub struct SizesDiffer(

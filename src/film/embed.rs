@@ -7,8 +7,8 @@ use base64::{Engine, prelude::BASE64_STANDARD};
 use super::{mean::mean, memory::TooLarge, pixels::Film, png::write_png};
 use crate::area::Area;
 
-/// Reduces a picture to at most `columns` × `rows` pixels. Each new pixel is the mean of a square
-/// of pixels in linear light.
+/// Reduces the size of a picture to at most `columns` × `rows` pixels. The colour of each new pixel
+/// is the mean of a square of old pixels, in linear light.
 ///
 /// # Errors
 ///

@@ -28,8 +28,8 @@ use crate::{area::Area, files::Sink};
 const DIGEST: &str = "pinhole:digest";
 
 /// Writes `film` as an OpenEXR file. The film shows the area `part` of a picture with the area
-/// `whole`. Both are equal if the picture was not cropped. `digest` is that of the picture's
-/// recipe, if it is known.
+/// `whole`. The two areas are equal if the picture was not cropped. `digest` is the digest of the
+/// picture's recipe, if the recipe is known.
 ///
 /// # Errors
 ///
@@ -109,7 +109,8 @@ pub fn write_exr_bands<P: AsFloats, B: Borrow<Film<P>>>(
     })
 }
 
-/// Returns the header of an OpenEXR file, as a list of one.
+/// Returns the header of an OpenEXR file. It is in a list, since such a file may have several
+/// headers.
 fn headers(part: Area, whole: Area, digest: Option<&str>) -> Headers {
     let channel = |name: &str| ChannelDescription::named(name, SampleType::F32);
     let size = Vec2(part.width as usize, part.height as usize);
@@ -159,9 +160,9 @@ struct Rows<I, B> {
     /// The picture's area.
     part: Area,
     bands: I,
-    /// The band in use.
+    /// The band that contains the row that was returned last; `None` before the first row.
     band: Option<B>,
-    /// Row after the last one of the band in use, counted from the top of the picture.
+    /// Number of rows of the picture that were received so far, including all rows of `band`.
     end: u32,
     /// The row that was returned last, as floats.
     floats: Vec<[f32; 3]>,

@@ -4,7 +4,7 @@
 //! `pixels` in memory, and picture files (`png`, which also contains the scene, and `exr`). `read`
 //! reads a `picture` from a file of any program. It decodes some formats in modules of their own,
 //! such as `pnm` and `read_exr`, and the others with libraries. `compare` measures the differences
-//! of two pictures, and `embed` encodes them for an HTML page.
+//! of two pictures, and `embed` encodes a picture for an HTML page.
 
 mod compare;
 #[cfg(feature = "pages")]

@@ -4,15 +4,15 @@ use super::pixels::Film;
 use crate::area::Area;
 
 /// Approximate maximum number of pixels that are compared in the search for a part's position,
-/// summed over all positions. A larger number makes the search slower. A smaller number makes a
-/// wrong result more likely, since fewer pixels are compared at each position: at least 16, and at
-/// most 400.
+/// summed over all positions. At each position, 16 to 400 pixels are compared, or all pixels of a
+/// smaller part. A larger maximum makes the search slower. With a smaller one, fewer pixels are
+/// compared at each position, so that a wrong result is more likely.
 const MAX_COMPARED: u64 = 100_000_000;
 
-/// Maximum ratio of the smallest sum of squared differences at any position to the mean of the sums
-/// at all positions. If the ratio is larger, no position is returned. The usual noise of sampling
-/// leaves a ratio far below this limit at the right position. If the part does not fit anywhere,
-/// the ratio is near 1.
+/// Maximum ratio of two sums of squared differences: the sum at the best position, and the mean of
+/// the sums at all positions. If the ratio is larger, no position is returned. At the right
+/// position, the usual noise of sampling leaves a ratio far below this limit. If the part does not
+/// fit anywhere, the ratio is near 1.
 const MAX_LEFT: f64 = 0.2;
 
 /// Minimum area of a part, as a fraction of the whole picture's area. No position is returned for a

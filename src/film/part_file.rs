@@ -127,7 +127,7 @@ pub fn exr_rows(file: impl BufRead + Seek + 'static, width: u32) -> io::Result<F
     })))
 }
 
-/// Returns the rows of a block, whose channels are blue, green and red.
+/// Returns the rows of a block. The block's channels must be blue, green and red, in this order.
 fn rows(
     block: &UncompressedBlock,
     channels: &ChannelList,

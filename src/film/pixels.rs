@@ -31,7 +31,7 @@ pub trait AsBytes: Pixel {
 
 /// Type of pixel that can be converted to 32-bit floats in linear light.
 pub trait AsFloats: Pixel {
-    /// Converts the pixel, each channel to the nearest 32-bit float.
+    /// Converts each channel of the pixel to the nearest 32-bit float.
     fn floats(self) -> [f32; 3];
 }
 
@@ -53,8 +53,8 @@ impl Pixel for [f64; 3] {
     }
 
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool {
-        // An EXR file contains 32-bit floats, so it suffices that the colour is certain after it is
-        // rounded to 32 bits.
+        // An EXR file contains 32-bit floats. So the colour counts as certain if all colours within
+        // the bound are equal after they are rounded to 32 bits.
         <[f32; 3]>::is_certain(light, bound, encoder)
     }
 }
@@ -106,7 +106,7 @@ impl AsBytes for [u8; 3] {
     }
 }
 
-/// Error: a list has not one pixel for each place of a picture, or the picture has no places.
+/// Error: the number of pixels in a list is not that of the picture, or is 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("{count} pixels do not make a picture of {width} × {height}")]
 pub struct WrongPixelCount {

@@ -1,11 +1,11 @@
 //! PNG files: pixels in 8-bit sRGB, and the text of the scene that the picture shows.
 //!
 //! Before the pixels, the file contains compressed iTXt chunks with these keywords: `Software`,
-//! Pinhole's version; `pinhole:scene`, the scene's text; and `pinhole:set` for each `--set`
-//! argument. If it shows only a part of a picture, it also contains `pinhole:crop`, the part as
-//! `X,Y,W,H`; `pinhole:size`, the whole picture's size as `W,H`; and `pinhole:digest`, a digest of
-//! the scene and the overrides. The file contains no date and nothing about the machine, so that
-//! equal scenes give equal files.
+//! Pinhole's version; `pinhole:scene`, the scene's text; and `pinhole:set` for each override, i.e.
+//! `--set` argument. If it shows only a part of a picture, it also contains `pinhole:crop`, the
+//! part as `X,Y,W,H`; `pinhole:size`, the whole picture's size as `W,H`; and `pinhole:digest`, a
+//! digest of the scene and the overrides. The file contains no date and nothing about the machine,
+//! so that equal scenes give equal files.
 
 use std::{
     borrow::Borrow,
@@ -33,8 +33,8 @@ const CROP: &str = "pinhole:crop";
 const SIZE: &str = "pinhole:size";
 const DIGEST: &str = "pinhole:digest";
 
-/// Maximum length, in bytes, of each text that says which part of a picture a file shows. Three
-/// times as long as the longest that Pinhole writes, a digest.
+/// Maximum length, in bytes, of each text that says which part of a picture a file shows. The
+/// longest text of this kind that Pinhole writes is a digest, with a third of this length.
 const PART_LIMIT: usize = 192;
 
 /// Error: the scene of a picture cannot be read from its PNG file.
@@ -82,8 +82,8 @@ pub fn write_png<P: AsBytes>(
     write_png_bands(size, recipe, out, [Ok(film)])
 }
 
-/// Writes a picture as [`write_png`] does, from bands of rows, from the top to the bottom. So the
-/// whole picture need not be in memory. `size` has the numbers of columns and rows.
+/// Writes a picture as [`write_png`] does, from bands of rows, from the top to the bottom. The
+/// whole picture need not be in memory. `size` is the numbers of columns and rows.
 ///
 /// # Errors
 ///
@@ -100,7 +100,7 @@ pub fn write_png_bands<P: AsBytes, B: Borrow<Film<P>>>(
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
     // Pictures of scenes have flat colours, so their rows repeat. Equal rows compress better
     // without PNG's filters, which store differences of neighbours. Compression levels above 3 make
-    // files a few percent smaller, but need three times as long.
+    // files a few percent smaller, but take three times as long.
     encoder.set_filter(Filter::NoFilter);
     encoder.set_deflate_compression(DeflateCompression::Level(3));
     let mut writer = encoder.write_header()?;

@@ -177,8 +177,7 @@ fn read_bytes(bytes: &[u8], limit: u64, coding: Coding) -> Result<Picture, Unrea
     })
 }
 
-/// Size and number format of the picture in a PNM: the number of channels, and the number that
-/// stands for white (`maxval`).
+/// Size and number format of the picture in a PNM. `maxval` is the number that stands for white.
 struct Raster {
     width: usize,
     height: usize,
@@ -307,8 +306,8 @@ fn mended(raster: &[u8], wanted: usize) -> Option<(Vec<u8>, Coding)> {
     Some((of_lines(&bytes)?, Coding::Utf8))
 }
 
-/// Returns whether bytes are UTF-8 text in which invalid bytes were replaced by U+FFFD, so that
-/// they are lost.
+/// Returns whether bytes are UTF-8 text in which invalid bytes were replaced by U+FFFD. The
+/// replaced bytes cannot be recovered.
 fn is_text_with_losses(raster: &[u8]) -> bool {
     str::from_utf8(raster).is_ok_and(|text| text.contains(char::REPLACEMENT_CHARACTER))
 }

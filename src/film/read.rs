@@ -59,8 +59,8 @@ pub fn read_picture(bytes: &[u8]) -> Result<Picture, Unreadable> {
     read_picture_up_to(bytes, DECODED_LIMIT)
 }
 
-/// Reads a picture of at most `limit` decoded bytes. The size in the file's header is checked
-/// before decoding, and so is the available memory.
+/// Reads a picture of at most `limit` decoded bytes. Before decoding, the size in the file's header
+/// and the available memory are checked.
 ///
 /// # Errors
 ///
@@ -122,8 +122,8 @@ fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unread
     let image = DynamicImage::from_decoder(decoder).map_err(unreadable)?;
     let opacity = match rounding {
         Rounding::Float => fill(&mut film, &image.into_rgba32f(), f64::from, f64::from),
-        // A byte k is the same fraction of its range as the 16-bit number 257 · k, since 65535 =
-        // 257 · 255.
+        // The library converts bytes to 16-bit numbers: a byte k becomes 257 · k. This is the same
+        // fraction of the range, since 65535 = 257 · 255. So one table of light serves for both.
         _ => {
             let light = light_of_words();
             let light = |word: u16| light[usize::from(word)];
@@ -190,8 +190,8 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let light = light_of_words();
     let word = |index: usize| match rounding {
         Rounding::Word => u16::from_be_bytes([samples[2 * index], samples[2 * index + 1]]),
-        // A byte k is the same fraction of its range as the 16-bit number 257 · k, since 65535 =
-        // 257 · 255.
+        // A byte k becomes the 16-bit number 257 · k. This is the same fraction of the range, since
+        // 65535 = 257 · 255. So one table of light serves for both.
         _ => 257 * u16::from(samples[index]),
     };
     let count = film.pixels().len();

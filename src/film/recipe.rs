@@ -1,5 +1,5 @@
-//! What a picture was made from, and which part of a whole picture it shows. Picture files store
-//! it.
+//! What a picture was made from, and which part of a whole picture it shows. Both are stored in the
+//! picture's file.
 
 use hmac_sha256::Hash;
 
@@ -61,8 +61,8 @@ impl Recipe {
     }
 
     /// Returns a digest of the scene's text, of the overrides, and of Pinhole's version, as 64
-    /// hexadecimal digits. Pictures with equal digests are of the same scene. It is SHA-256 of the
-    /// texts, each after its length in bytes.
+    /// hexadecimal digits. Pictures with equal digests are of the same scene. The digest is the
+    /// SHA-256 hash of these texts, each preceded by its length in bytes.
     pub fn digest(&self) -> String {
         let mut hash = Hash::new();
         let overrides = self.overrides.iter().map(String::as_str);

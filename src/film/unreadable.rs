@@ -47,7 +47,7 @@ pub enum Unreadable {
     /// picture.
     #[error("unpacking it takes more than 512 MiB of memory")]
     Unpacking,
-    /// The decoded picture would exceed the limit.
+    /// The decoded picture would have more bytes than the limit that the caller set.
     #[error(
         "it has {width} × {height} pixels, which are decoded to more than the {limit} bytes that are read"
     )]
@@ -59,7 +59,7 @@ pub enum Unreadable {
         /// Maximum number of decoded bytes.
         limit: u64,
     },
-    /// The picture has no columns or no rows.
+    /// The picture has no columns or no rows. The fields are the numbers of columns and rows.
     #[error("it has {0} × {1} pixels, and so none at all")]
     Empty(u64, u64),
     /// There is not enough memory for the picture.

@@ -16,29 +16,32 @@ use crate::{
     scene::Scene,
 };
 
-/// Threshold below which a mistake is not reported: the fraction of the picture's squared error
-/// that the mistake explains. A larger value would hide small mistakes. A smaller one would report
-/// mistakes that explain almost nothing.
+/// Minimum fraction of the picture's squared error that a reported mistake explains. A larger value
+/// would hide small mistakes. A smaller one would report mistakes that explain almost nothing.
 const LEAST_EXPLAINED: f64 = 1e-5;
 
-/// Number of fields of one object with wrong numbers from which on they are not believed. Few
-/// students mistype two fields of an object, and hardly any three.
+/// Minimum number of wrong fields in one object that makes a hypothesis implausible. Few students
+/// mistype two fields of an object, and hardly any three.
 const IMPLAUSIBLE_FIELDS: usize = 3;
 
-/// Displacement of an object, in pixels, below which a wrong number is not believed. It exceeds the
-/// distance of the mean of four random samples, shared by all pixels, from a pixel's middle.
+/// Threshold of displacement, in pixels: wrong numbers that displace every object by less are
+/// considered implausible. It is larger than a displacement that correct programs can cause: if all
+/// pixels use the same four random sample positions, their mean is typically 0.2 pixels from the
+/// pixel's middle.
 const LEAST_DISPLACEMENT: f64 = 0.4;
 
 /// Maximum fraction of the picture's squared error that guesses may leave unexplained. Guesses that
-/// leave more are not reported: the picture then mostly shows something else, and they would
+/// leave more are not reported: the picture then mostly shows something else, so the guesses would
 /// mislead.
 const USELESS_REST: f64 = 0.5;
 
-/// Place in a row's message for a factor of light, which is estimated from the picture.
+/// Placeholder in a mistake's message for the factor by which light is scaled. The factor is
+/// estimated from the picture.
 const GAIN: &str = "{gain}";
 
-/// Identifier of the mistake that the rays are parallel. Such a program has no distance of the view
-/// plane and no angle, so a wrong number for one of them only means another size of the window.
+/// Identifier of the mistake that rays are parallel. The rays then start in a window, and the
+/// distance of the view plane and the angle of view affect only the window's size. So wrong numbers
+/// for these fields are reported as a wrong window size.
 const PARALLEL: &str = "parallel_rays";
 const PARALLEL_OF_OWN_SIZE: &str =
     "the rays are parallel: they leave along −w, from a window whose size is not the scene's";
@@ -154,7 +157,7 @@ fn attributed(judge: &Judge, last: &Candidate, is_explained: bool) -> Vec<NamedM
             message = format!("{message}: {is} instead of {should}");
         }
         if message.contains(GAIN) && gain == "1" {
-            // A factor that is 1 as far as it can be known is no mistake.
+            // The estimated factor rounds to 1, so light is not scaled by mistake.
             (left, before) = (now, after);
             continue;
         }
@@ -205,7 +208,8 @@ fn with_mistakes(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     } else {
         (Kind::Unknown, Vec::new(), mistakes)
     };
-    // Guesses do not explain the picture, so the objects are then judged by the correct scene.
+    // If only guesses are reported, they do not explain the picture. The objects are then judged by
+    // the correct scene.
     let known = if is_named { last } else { &correct };
     let (mut objects, is_background_right) = objects::judged(judge, known);
     for object in mistakes.iter().filter_map(|mistake| mistake.object) {
@@ -222,9 +226,10 @@ fn with_mistakes(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     }
 }
 
-/// Returns whether all mistakes that would be named are wrong numbers that hardly move anything in
-/// the picture. Nobody types such numbers; they more likely imitate samples that lie beside the
-/// middle of their pixels. `named` has those of the hypothesis's mistakes that explain anything.
+/// Returns whether the mistakes in `named` are all wrong numbers that hardly move anything in the
+/// picture. Nobody types such numbers. More likely, the samples are not centred in their pixels,
+/// and the wrong numbers imitate this. `named` contains only mistakes that explain a part of the
+/// difference from the picture.
 fn is_slight(scene: &Scene, candidate: &Candidate, named: &[NamedMistake]) -> bool {
     let is_named = |mistake: &&Mistake| {
         let mut named = named.iter();

@@ -17,8 +17,8 @@ use crate::film::Film;
 /// pixel. Returns `None` if no pixel lacks a sample.
 ///
 /// A pixel is suspected if it has the colour `empty` and the exact picture has another colour
-/// there. The suspicion is dropped in two cases. First, if more of the suspects are neighbours than
-/// chance explains. Second, if there are more suspects than expected: with n samples per pixel on
+/// there. The suspicion is dropped in two cases. First, if suspects are neighbours more often than
+/// by chance. Second, if there are more suspects than expected: with n samples per pixel on
 /// average, a fraction e⁻ⁿ of the pixels has none. Here n is estimated from the noise of the other
 /// pixels.
 pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Option<Film> {
@@ -49,9 +49,10 @@ pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Op
         }
     }
     let both = share * share;
-    // Pairs of neighbours that share a pixel are not independent, and each pair shares a pixel with
-    // six others. So the number of empty pairs varies more than a Poisson variable. The quotient of
-    // its variance and its mean is `more`, so both numbers are divided by `more`.
+    // Pairs that share a pixel are not independent, and each pair shares a pixel with six others.
+    // So the number of empty pairs has a larger variance than a Poisson variable of the same mean.
+    // `more` is the quotient of the variance and the mean. The found number and the expected number
+    // are both divided by it, so that the bound for a Poisson variable applies.
     let more = 1.0 - both + 6.0 * share * (1.0 - share);
     if !is_chance(empty_pairs / more, pairs * both / more) {
         return None;

@@ -5,8 +5,8 @@ use serde_json::{Map, Value, json};
 use super::verdict::{NamedMistake, Verdict};
 use crate::film::{CHANNELS, Comparison};
 
-/// Returns the JSON fields about a comparison of two pictures and, if the second is a scene's exact
-/// picture, about the verdict on the first. `found` is `None` if their sizes differ, and
+/// Returns the JSON fields for a comparison of two pictures, and for a verdict on the first picture
+/// if there is one. `found` is the comparison, or `None` if the pictures have different sizes.
 /// `tolerance` is in steps of 8-bit sRGB.
 #[doc(hidden)]
 pub fn figures(

@@ -76,10 +76,10 @@ pub struct Reference {
     effort: f64,
 }
 
-/// Number of bytes of memory per pixel. It is enough for seven colours, each of three numbers. One
-/// colour is the exact mean. The other six are two copies of a mean, the mean's variance, and the
-/// variance of a sample. Two copies exist for a short time, while the moments of the picture are
-/// collected.
+/// Number of bytes per pixel that the computation of the exact picture needs. It is enough for
+/// seven colours of three numbers each. One of them is the exact mean. The other six are two copies
+/// of a mean, the mean's variance, and the variance of a sample. Two copies exist for a short time,
+/// while the moments of the picture are collected.
 const BYTES_A_PIXEL: u64 = 7 * size_of::<[f64; 3]>() as u64;
 
 impl fmt::Debug for Reference {
@@ -202,8 +202,8 @@ impl Reference {
             return self.judge_opaque(&picture.film, jpeg, cancel);
         };
         // First, a transparent picture is judged as it appears on black. If it is wrong there, or
-        // if no pixel is opaque, its colours are judged without alpha. An exception is a picture
-        // whose alpha is 0 everywhere, because nothing of it is visible.
+        // if no pixel is opaque, its colours are judged without alpha. But if alpha is 0
+        // everywhere, nothing is visible, so the colours are not judged.
         let verdict = self.judge_opaque(&picture.film, jpeg, cancel)?;
         let is_right = matches!(verdict.kind, Kind::Right | Kind::Noise);
         if is_right && opacity.range[1] == 1.0 {
@@ -239,8 +239,9 @@ impl Reference {
             }
             return Ok(verdict);
         }
-        // If rows have one colour, either the program never wrote them, or its camera looks
-        // elsewhere. They count as never written if the rest of the picture is right.
+        // If rows at the top or bottom have one colour, either the program never wrote them, or its
+        // camera sees something else there. They are reported as never written if the rest of the
+        // picture is right.
         if let Some((rest, fact)) = plain_facts::without_empty_rows(film, exact) {
             let rest = self.judge_full(&rest, jpeg, 0, cancel)?;
             if matches!(rest.kind, Kind::Right | Kind::Noise) {
@@ -250,8 +251,9 @@ impl Reference {
         self.judge_full(film, jpeg, MAX_MISTAKES, cancel)
     }
 
-    /// Judges a picture by a search for its mistakes: at most `most`, and in addition some that are
-    /// visible only at edges. Pixels without a sample are ignored.
+    /// Judges a picture by a search for the mistakes that the program makes. The search finds at
+    /// most `most` mistakes, and a few more that are visible only at edges. Pixels without a sample
+    /// are ignored.
     fn judge_full(
         &self,
         film: &Film,

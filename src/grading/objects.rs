@@ -38,7 +38,7 @@ pub struct ObjectVerdict {
     pub off: f64,
 }
 
-/// Returns a verdict for each object of a scene, all of which are correct.
+/// Returns the verdicts on the objects of a scene that a picture shows correctly.
 pub fn right(scene: &Scene) -> Vec<ObjectVerdict> {
     let right = |index: usize| ObjectVerdict {
         index,
@@ -107,8 +107,9 @@ pub fn off(from: &Scene, to: &Scene, object: usize) -> f64 {
     moved.fold(0.0, f64::max)
 }
 
-/// Returns some points of a shape. They move if the shape moves. For a checkerboard, they are the
-/// points `squares`, whose coordinates are in units of a square's side.
+/// Returns points from which the displacement of a shape is measured: the ends of a sphere's axes,
+/// or the corners of a triangle or box. For a checkerboard, they are the points `squares`, whose
+/// coordinates are in units of a square's side.
 fn points(shape: &Shape, squares: &[DVec3]) -> Vec<DVec3> {
     match shape {
         Shape::Sphere(sphere) => {

@@ -16,9 +16,9 @@ use crate::{area::Area, film::Film, scene::Scene};
 /// chance.
 const NOISE_RATIO: f64 = 0.8;
 
-/// Number of cells along the picture's longer side, in a search for causes of an empty picture. It
-/// tests with one ray per cell whether a faulty program sees an object. With fewer cells, more
-/// small objects are missed; with more, the search takes longer.
+/// Number of cells along the picture's longer side in a search for causes of an empty picture. One
+/// ray per cell tests whether a faulty program sees an object. With fewer cells, more small objects
+/// are missed; with more, the search takes longer.
 const CELLS: u32 = 32;
 
 /// Maximum number of possible causes that are listed for an empty picture. Chosen to keep the
@@ -131,8 +131,8 @@ pub fn without_empty_rows(film: &Film, exact: &Film) -> Option<(Film, NamedMista
         let light = film.row(at(0))[0];
         let is_empty = |y: &u32| film.row(at(*y)).iter().all(|pixel| *pixel == light);
         let count = (0..height).take_while(is_empty).count() as u32;
-        // A sky has one colour in any picture, even if this colour is wrong. So a row of the
-        // sky counts as empty only if its correct colour appears elsewhere in the picture.
+        // A row that has one colour in the exact picture may show the sky, in a wrong colour. So it
+        // is reported as empty only if its correct colour appears elsewhere in the picture.
         let is_shown = |light| film.pixels().iter().any(|pixel| is_near(*pixel, light));
         let is_wrong = |y: &u32| {
             let own = exact.row(at(*y));

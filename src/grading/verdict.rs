@@ -64,8 +64,8 @@ pub struct Verdict {
     pub samples: Option<f64>,
     /// The mistakes that together explain the picture.
     pub mistakes: Vec<NamedMistake>,
-    /// The mistakes that come nearest to the picture, if no known mistakes explain it, or only
-    /// implausible ones do.
+    /// The mistakes whose predicted picture differs least from the picture. Given only if no known
+    /// mistakes explain the picture, or only implausible ones do.
     pub guesses: Vec<NamedMistake>,
     /// Fraction of the squared difference between the picture and the exact one that the guesses
     /// do not explain. Differences that noise can explain are ignored. `None` if only noise is

@@ -97,8 +97,8 @@ impl BoardBatches {
 
 impl Batch {
     /// Computes and empties the queue. Calls `emit` for each pixel, with the area of the board's
-    /// first colour minus that of the second. `crossing` holds how many lines between columns of
-    /// the board cross each pixel, and how many lines between rows do, the smaller number first.
+    /// first colour minus that of the second. `crossing` contains two numbers: how many lines of
+    /// each of the board's two families cross each pixel. The smaller number comes first.
     fn compute(
         &mut self,
         crossing: [usize; 2],

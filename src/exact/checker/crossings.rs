@@ -22,9 +22,10 @@ use multiversion::multiversion;
 /// terms, the bound therefore contains the factor 22!/2·(18π)⁻²⁰, about 5e-15.
 pub(super) const MAX_TERMS: usize = 20;
 /// Upper limit on the number of blocks into which the sum over an edge's crossings is divided. The
-/// truncation error of each block is limited to the tolerance divided by this number, so that all
-/// blocks together keep the tolerance. The longest sum, 300,000 crossings, has about 15 blocks that
-/// grow up to `MAX_BLOCK` crossings, and then about 74 of this length.
+/// truncation error of each block is limited to the tolerance divided by this number, so that the
+/// error of all blocks together is within the tolerance. The longest sum has 300,000 crossings:
+/// about 15 blocks that grow up to `MAX_BLOCK` crossings, and about 74 blocks of `MAX_BLOCK`
+/// crossings.
 const MAX_BLOCKS: f64 = 128.0;
 
 /// Minimum number of crossings in a block of the sum over an edge's crossings. With this many,
@@ -148,10 +149,10 @@ impl LineCrossings {
             sum.value += if done % 2.0 == 0.0 { block } else { -block };
             // The error of the coordinate t is at most two unit roundoffs, plus three unit
             // roundoffs times the distance from the start of the chunk. This distance is half a
-            // chunk on average. The slope of the series X is at most π times the bound of X, so
-            // that an error of t causes π times as large an error of X. The factor 4 of `reach`
-            // covers these errors with a margin. A term of X has 14 roundings of its own, derived
-            // in `green`. The running sum of a lane has one rounding for each number added.
+            // chunk on average. The slope of the series X is at most π times the bound of X, so the
+            // error of X is at most the error of t times π times this bound. The factor 4 of
+            // `reach` covers these errors with a margin. A term of X has 14 roundings of its own,
+            // derived in `green`. The running sum of a lane has one rounding for each number added.
             let reach = 2.0 + 0.5 * count.min(CHUNK as f64);
             let added = count / LANES as f64 + 4.0;
             let rounding = UNIT * series.size(1, depth) * (added + 16.0 + 4.0 * PI * reach);
@@ -173,8 +174,8 @@ impl LineCrossings {
         let mut j = done;
         while left > 0 {
             let now = left.min(CHUNK);
-            // The compiler vectorises this loop if it runs over whole vectors. The values beyond
-            // `now` are therefore computed, too, and then set to 0.
+            // The compiler vectorises this loop only if it runs over whole vectors. So up to
+            // `LANES` − 1 values too many are computed, and then set to 0.
             let mut values = [0.0; CHUNK];
             let filled = now.next_multiple_of(LANES);
             let t = self.reduced_at(&Double::from_f64(j)).hi;

@@ -80,10 +80,10 @@ const ENDLESS_TAIL: f64 = 8.0 / 9.0;
 /// because only the two edges that recede from the eye have long sums; the sums over other edges
 /// hardly contribute.
 const ONLY_FINITE_TAIL: f64 = 1.0;
-/// Minimum fraction of the pixel's tolerance that the truncated sums over one polygon may use up.
-/// If the polygon's area, in square pixels, is greater than this number, the fraction is the area
-/// instead. With a smaller minimum, the sums over tiny polygons would become long. With a larger
-/// one, the errors of many tiny polygons could exceed the tolerance.
+/// Minimum share of the pixel's tolerance that a polygon gets for its truncated sums. The share is
+/// the polygon's area, in square pixels, if this is greater. With a smaller minimum, the sums over
+/// tiny polygons would become long. With a larger one, the errors of many tiny polygons could
+/// exceed the tolerance.
 const MIN_SHARE: f64 = 1.0 / 64.0;
 
 /// Table of (k + 1)!/2, with the index k. At the depth m, a unit of the floor covers K/m³ square
@@ -158,10 +158,10 @@ pub(super) fn sum(
     sum
 }
 
-/// Returns how many terms the series need for a truncation error of the polygon's integral of at
-/// most `limit`, and a bound on this error. If no number of terms is enough, returns the one with
-/// the smallest bound. `nearest` is the smallest depth in the polygon, and `area` its area in the
-/// picture.
+/// Returns the number of terms of the series with which the truncation error of the polygon's
+/// integral is at most `limit`, and a bound on this error. If no number of terms is enough, returns
+/// the number with the smallest bound. `nearest` is the smallest depth in the polygon, and `area`
+/// is the polygon's area in the picture.
 fn terms(
     board: &Homography,
     nearest: f64,
@@ -262,8 +262,8 @@ struct Edge {
     /// near end to its far end, and whether the floor's second coordinate changes at least as much
     /// along the edge as the first. The sign is +1 if both conditions hold or neither does.
     sign: f64,
-    /// Factor with which the polygon's integral contains the difference of the potential
-    /// ([`potential`]) between the edge's ends. It is 1 if the floor's second coordinate changes at
+    /// Factor by which the difference of the potential ([`potential`]) between the edge's ends is
+    /// multiplied in the polygon's integral. It is 1 if the floor's second coordinate changes at
     /// least as much along the edge as the first, and 0 otherwise.
     potential: f64,
     c: f64,
@@ -331,7 +331,7 @@ impl Edge {
         } else {
             far.depth - near.depth
         };
-        // If no line is crossed, `stride` is not used, and stays 0.
+        // If no line is crossed, `lines` is 0. `stride` is not used then, so it is left at this 0.
         let mut stride = lines;
         if !lines.is_zero() {
             stride = along.over(&across);

@@ -77,9 +77,9 @@ pub(in crate::exact) struct Homography {
     displacement: f64,
     /// Unit vector along the horizon.
     horizon: DVec2,
-    /// Maximum displacement of a point perpendicular to the horizon by rounding errors, in pixels,
-    /// as the coefficients `[d, e]` of d + e·L. L is the value at the point of the form `below`,
-    /// which is 0 on the horizon.
+    /// Coefficients d and e of the maximum displacement of a point perpendicular to the horizon by
+    /// rounding errors, d + e·L, in pixels. L is the value of the form `below` at the point; it is
+    /// 0 on the horizon.
     across_horizon: [f64; 2],
     /// Maximum value of the form `below`, which is 0 on the horizon, at which a point is treated as
     /// lying on the horizon. A value up to this maximum may be only a rounding error.
@@ -144,7 +144,8 @@ pub(in crate::exact) fn form(c: &[f64; 3], p: DVec2) -> f64 {
 }
 
 /// Returns an upper bound of |c0·x| + |c1·y| + |c2| for the points (x, y) of a pixel, where |x| and
-/// |y| are at most ½. The parameter `[x, y, z]` has the factors c0, c1 and c2 of a linear form.
+/// |y| are at most ½. The parameter `[x, y, z]` contains the factors c0, c1 and c2 of a linear
+/// form.
 pub(in crate::exact) fn size([x, y, z]: &[f64; 3]) -> f64 {
     0.5 * (x.abs() + y.abs()) + z.abs()
 }
@@ -158,10 +159,10 @@ fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
 }
 
 impl Homography {
-    /// Derives the homography from the three linear forms of [`Homography`]: `across` has those of
-    /// the two numerators, `below` that of the common denominator. A common positive factor of the
-    /// three does not matter. The error bounds are smallest if the origin of the floor's
-    /// coordinates is near the part of the floor that the pixel shows.
+    /// Derives the homography from the three linear forms of [`Homography`]. `across` contains the
+    /// forms of the two numerators, and `below` is the form of the common denominator. A common
+    /// positive factor of the three does not matter. The error bounds are smallest if the origin of
+    /// the floor's coordinates is near the part of the floor that the pixel shows.
     pub fn new(across: [[f64; 3]; 2], below: [f64; 3]) -> Self {
         let (below, scale) = normalized(below);
         let across = across.map(|form| form.map(|c| libm::ldexp(c, -scale)));
@@ -253,8 +254,8 @@ impl Homography {
         } else {
             1.0 / level
         };
-        // The floor's coordinates N/L, as N times the depth 1/L. If one overflows, the point is
-        // treated as lying on the horizon.
+        // The floor's coordinates N/L are computed as N times the depth 1/L. If one overflows, the
+        // point is treated as lying on the horizon.
         let places = floor.map(|n| n * depth);
         if depth.is_infinite() || !places.iter().all(|place| place.is_finite()) {
             let depth = f64::INFINITY;

@@ -109,7 +109,8 @@ impl Homography {
             (DVec2::INFINITY, DVec2::NEG_INFINITY),
             |(low, high), place| (low.min(*place), high.max(*place)),
         );
-        // The numbers of columns and rows; infinite or NaN if the polygon reaches the horizon.
+        // Numbers of columns and rows of the bounding box on the floor, added up. The sum is
+        // infinite or NaN if the polygon reaches the horizon.
         let spans = (high.floor() - low.floor() + 1.0).element_sum();
         spans + measure(&floor).0.abs()
     }

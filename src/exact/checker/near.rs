@@ -23,8 +23,8 @@ use crate::math::two_sum;
 /// Maximum number of corners that cutting may add to a polygon. Squares are cut off the polygon one
 /// after another, and each cut changes what is left. If the rest has more corners, cutting ends,
 /// and the rest's area is added to the error bound. Exact cuts add at most two corners, both on the
-/// last line. Many more show that the lines are closer to each other than rounding errors, so that
-/// cutting is useless.
+/// line of the latest cut. Many more show that the lines are closer to each other than rounding
+/// errors, so that cutting is useless.
 const MAX_EXTRA_CORNERS: usize = 32;
 
 /// Maximum absolute value of a board coordinate, in squares, in a polygon that is cut into squares.
@@ -75,9 +75,9 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -
     tally.sum()
 }
 
-/// Cutter of a convex polygon into the strips between neighbouring lines of one of the board's two
-/// families (columns or rows of squares), one strip after another. `rest` is the part that is not
-/// yet cut off.
+/// Cutter of a convex polygon into strips, one after another. A strip lies between neighbouring
+/// lines of one family of the board's lines (those between columns or between rows of squares).
+/// `rest` is the part of the polygon that is not yet cut off.
 struct Cutter {
     across: [f64; 3],
     below: [f64; 3],

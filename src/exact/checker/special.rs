@@ -90,8 +90,8 @@ const SECH: [f64; POWERS] = {
 };
 
 /// Coefficients of the periodic Euler polynomials A_k ([`waves`]) on a square of the board, in
-/// powers of η, the signed distance from the square's middle (−½ to ½). In row k, column j has the
-/// coefficient of η^2j if k is even, and of η^(2j+1) if k is odd.
+/// powers of η, the signed distance from the square's middle (−½ to ½). Row k, column j contains
+/// the coefficient of η^2j if k is even, and of η^(2j+1) if k is odd.
 const FACTORS: [[f64; POWERS]; ORDERS] = {
     let mut factorials = [1.0; ORDERS];
     let mut k = 1;

@@ -48,7 +48,7 @@ pub(super) const MAX_STRIP_LINES: usize = 6;
 /// Number of pixels that are computed at once. The widest vector registers hold eight `f64`.
 pub(super) const PIXELS: usize = 8;
 
-/// One number per pixel.
+/// One number for each of the eight pixels that are computed at once.
 type Lanes = [f64; PIXELS];
 
 /// Maximum number of sides of a pixel's strips: four parts of the pixel's sides for each strip, and
@@ -153,9 +153,9 @@ impl BoardLanes {
         self.sign[place] = if *odd { -wave } else { wave };
     }
 
-    /// Computes the integral of the board's sign over each pixel. `lines` has the number of lines
-    /// between columns of the board that cross every pixel, and the number of those between rows,
-    /// the smaller number first.
+    /// Computes the integral of the board's sign over each pixel. `lines` contains two numbers: how
+    /// many lines of each of the board's two families cross every pixel. The smaller number comes
+    /// first.
     pub fn sums(&self, lines: [usize; 2], buffer: &mut StripBuffer) -> LaneSums {
         sums_simd(self, lines, buffer)
     }
@@ -192,7 +192,8 @@ impl BoardLanes {
         // displace each cutting line, and the lines on either side, by four unit roundoffs.
         //
         // A displaced line sweeps at most √2, the pixel's diagonal, times its displacement. The
-        // sign changes there, which doubles the error, and 2√2 < 3.
+        // sign changes there, which doubles the error. So displacements are multiplied by 3, which
+        // exceeds 2√2.
         let [strips, lines] = [few + 1, many + 1].map(|count| count as f64);
         let points = 4.0 * UNIT * (strips + 1.0);
         LaneSums {
@@ -328,8 +329,8 @@ impl BoardLanes {
     }
 
     /// Returns twice the signed area of those parts of the strips that lie beyond a line. The line
-    /// is one of the board's family with more lines in the pixel; its number is `line`, counted
-    /// from the pixel's first square.
+    /// belongs to the family of the board's lines with more lines in the pixel. Its number is
+    /// `line`, counted from the pixel's first square.
     #[inline(always)]
     fn beyond(&self, line: f64, sides: &[Sides]) -> Lanes {
         let mut area = [0.0; PIXELS];

@@ -132,8 +132,8 @@ fn brute(forms: [[f64; 3]; 3], polygon: &[DVec2]) -> f64 {
         let mut j = first;
         while j <= last {
             let seen = |q: DVec2| inverse * q.extend(1.0);
-            // A square may reach behind the eye, where the depth m is negative. It is clipped well
-            // before the eye.
+            // A square may reach behind the eye, where the depth m is negative. So it is clipped at
+            // half the least depth of the polygon.
             let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
                 .map(|(x, y)| DVec2::new(i + x, j + y));
             let before = clip(&corners, |q| seen(q).z - 0.5 * nearest);
@@ -172,8 +172,8 @@ fn agree(found: BoundedSum, expected: f64, most: f64, what: impl std::fmt::Debug
 }
 
 /// Asserts that the error of `found` is within its bound and at most `most`. `size` is twice the
-/// largest coordinate in the computation of the expected value, which determines the rounding
-/// errors of that value.
+/// largest coordinate in the computation of `expected`. The rounding errors of `expected` are
+/// proportional to it.
 fn agree_in_size(
     found: BoundedSum,
     expected: f64,
@@ -221,7 +221,7 @@ fn wide_views() {
             };
             let found = view.board().alone(&PIXEL);
             // The expected value is computed with coordinates as large as the pixel's distance from
-            // the centre of the horizon, which multiplies its rounding errors.
+            // the centre of the horizon. Its rounding errors are proportional to this distance.
             let size = view.place.length();
             agree_in_size(found, brute(view.forms(), &PIXEL), size, 1e-10, view);
             assert!(found.bound < 1e-10, "{view:?}: {found:?}");
@@ -390,8 +390,8 @@ fn the_widest_views() {
                 let found = view.board().alone(&polygon);
                 let (expected, left) = brute_limit(&view, &polygon, most);
                 let error = (found.value - expected).abs();
-                // `brute_limit` is exact only for a focal length of 0. The finite focal length
-                // displaces lines.
+                // `brute_limit` is exact only for a focal length of 0. A greater focal length
+                // displaces lines, so the assertion tolerates an error proportional to it.
                 assert!(
                     error <= found.bound + left + 1e-11 + 1e3 * focal,
                     "{degrees} {focal:e} {y}: {found:?}, not {expected} to {left:e}: {error:e}"

@@ -67,14 +67,14 @@ pub enum Rays {
     /// The scene's up vector is used as the picture's upward direction, although it need not be
     /// perpendicular to the view direction.
     UpAsTop,
-    /// The roll turns the right vector first, and then computes the new upward direction from the
-    /// turned vector instead of the original one. This skews the picture.
+    /// The roll is applied to the right vector first. The upward direction is then computed from
+    /// the turned right vector instead of the original one, which skews the picture.
     NewRight,
     /// The roll turns the right vector only, not the upward direction. This skews the picture.
     RightAlone,
-    /// Rays are parallel. Objects at a certain distance from the eye appear as large as in the
-    /// correct picture, nearer ones smaller and farther ones larger. The number is this distance,
-    /// in metres.
+    /// Rays are parallel. The field is the distance from the eye, in metres, at which objects
+    /// appear as large as in the correct picture. Nearer objects appear smaller and farther ones
+    /// larger than in the correct picture.
     Parallel(f64),
     /// The projection is that of a fisheye lens: the angle between a ray and the view direction is
     /// proportional to the distance from the picture's middle.
@@ -149,14 +149,14 @@ pub struct Behaviour {
     pub clips_distances: bool,
     /// How the intersections of a ray with a sphere are computed.
     pub spheres: Spheres,
-    /// Distance from the origin at which a checkerboard ends, in metres along both of its axes.
+    /// Largest absolute coordinate of a checkerboard's points along its two axes, in metres.
     /// Infinity is correct.
     pub board_reach: f64,
     /// Index of the axis perpendicular to a checkerboard; 1, the y axis, is correct.
     pub board_normal: usize,
     /// How the colour of a surface is shaded.
     pub shading: Shading,
-    /// The one object with which rays are intersected wrongly: its index, and the fault.
+    /// Index of an object that rays are intersected with wrongly, and the fault. `None` is correct.
     pub hit: Option<(usize, HitFault)>,
 }
 

@@ -63,8 +63,8 @@ pub enum Shows {
     InAreas,
     /// Only at edges, where colours meet.
     AtEdges,
-    /// Inside areas and at edges, but weakly. Such a mistake is tested on single pixels, and only
-    /// if areas of one colour are wrong.
+    /// Inside areas and at edges, but weakly. The search at edges tries such a mistake only if
+    /// areas of one colour are wrong.
     Everywhere,
 }
 
@@ -80,9 +80,9 @@ impl Mistake {
         }
     }
 
-    /// Returns the index of the object that the mistake is about. If a block of the scene's file
-    /// describes several objects with the same wrong numbers, it is the first of them. Returns
-    /// `None` if the mistake is about no object, or about two.
+    /// Returns the index of the object that the mistake is about. If the mistake is about several
+    /// objects of one block of the scene's file, returns the index of the first. Returns `None` if
+    /// the mistake is about no object, or about two objects whose colours are exchanged.
     pub fn object(&self) -> Option<usize> {
         match self {
             Self::Row(_, object) => *object,
@@ -94,7 +94,8 @@ impl Mistake {
         }
     }
 
-    /// Returns whether the mistake is a wrong number that says how much the camera sees.
+    /// Returns whether the mistake is wrong numbers of the camera's angle of view, or of the
+    /// distance or height of its view plane. These fields set how much the camera sees.
     pub fn is_size(&self) -> bool {
         const SIZES: [&str; 4] = ["d", "fov", "hfov", "view_height"];
         matches!(self, Self::Numbers(parameter, _)
@@ -153,8 +154,8 @@ impl Candidate {
         }
     }
 
-    /// Returns a program with some mistakes. Returns `None` if one of them cannot be added to the
-    /// scene and the mistakes before it (see [`Self::with`]).
+    /// Returns a hypothesis with the given mistakes, added in this order. Returns `None` if
+    /// [`Self::with`] rejects one of them.
     pub fn of(scene: &Scene, mistakes: impl IntoIterator<Item = Mistake>) -> Option<Self> {
         let mut mistakes = mistakes.into_iter();
         mistakes.try_fold(Self::correct(scene), |candidate, one| candidate.with(one))
@@ -169,8 +170,9 @@ impl Candidate {
         }
     }
 
-    /// Adds a mistake. Returns `None` if it is impossible in the scene. Also returns `None` if a
-    /// row of the table, or an exchange of colours, changes nothing.
+    /// Returns a copy of the hypothesis with one more mistake. Returns `None` if the mistake is
+    /// impossible in the scene. Also returns `None` if a row of the table, or an exchange of
+    /// colours, changes nothing.
     pub fn with(&self, mistake: Mistake) -> Option<Self> {
         let mut candidate = self.clone();
         match &mistake {
@@ -284,8 +286,8 @@ impl Candidate {
         self.behaviour.is_correct() && !self.is_filtered()
     }
 
-    /// Returns whether both hypotheses have the same mistakes, although with other numbers. Also
-    /// returns `true` if both programs are equal and make no change to the picture's light.
+    /// Returns whether both hypotheses have the same mistakes, apart from the mistakes' numbers.
+    /// Also returns `true` if both programs are equal and make no change to the picture's light.
     pub fn is_same_kind(&self, other: &Self) -> bool {
         if self.effects.is_empty() && other.effects.is_empty() && self.shows_as(other) {
             return true;

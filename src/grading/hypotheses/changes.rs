@@ -61,8 +61,8 @@ pub fn shift(c: &mut Candidate, by: [f64; 2]) {
     c.behaviour.offset = c.layout.source_direction(by);
 }
 
-/// Increases the distance between the samples of neighbouring pixels. It becomes that of a program
-/// that divides the window into one column and one row less than the picture has.
+/// Increases the distance between the samples of neighbouring pixels, as if the program divided the
+/// window into one column and one row less than the picture has.
 pub fn spread_by_one_less(c: &mut Candidate) {
     c.behaviour.spread = sides(c).map(|side| side / (side - 1.0).max(1.0));
 }
@@ -219,9 +219,10 @@ pub fn exchange_faces(c: &mut Candidate, object: usize, order: [usize; 3]) {
     }
 }
 
-/// Moves a triangle so that one of its other points lies where its centroid should be. `point`
-/// computes this point from the vertices. Does nothing unless the scene describes the triangle by
-/// its centroid.
+/// Moves a triangle by the vector from `point` to its centroid. So the triangle looks as if the
+/// program placed `point`, instead of the centroid, at the position given in the scene. `point` is
+/// a function of the vertices. Does nothing unless the scene describes the triangle by its
+/// centroid.
 pub fn anchor(c: &mut Candidate, object: usize, point: fn([DVec3; 3]) -> DVec3) {
     if let Some(Shape::Triangle(triangle)) = shapes(c).nth(object) {
         let point = point(vertices(&triangle.outline));

@@ -80,8 +80,9 @@ impl Curve {
         interpolated(light, |at| table[at][1])
     }
 
-    /// Returns a table with a row for each of `LIGHTS` + 1 lights from 0 to 1. A row has the
-    /// difference in light between neighbouring 8-bit values, and the light that a viewer sees.
+    /// Returns a table with a row for each of `LIGHTS` + 1 lights from 0 to 1. The first entry of a
+    /// row is the difference in light between neighbouring 8-bit values. The second is the light
+    /// that a viewer sees.
     fn table(self) -> &'static [[f64; 2]] {
         static TABLES: [OnceLock<Vec<[f64; 2]>>; Curve::COUNT] =
             [const { OnceLock::new() }; Curve::COUNT];
@@ -100,8 +101,8 @@ impl Curve {
 /// curves are accurate to a thousandth of white, and sRGB to a hundredth of an 8-bit step.
 const LIGHTS: usize = 4096;
 
-/// Interpolates a function of light from 0 to 1. `value` returns entry i of its table, the value at
-/// the light i / `LIGHTS`.
+/// Interpolates a function of light from 0 to 1 linearly in a table. `value(i)` is the function's
+/// value at the light i / `LIGHTS`.
 fn interpolated(light: f64, value: impl Fn(usize) -> f64) -> f64 {
     let place = light.clamp(0.0, 1.0) * LIGHTS as f64;
     let at = (place as usize).min(LIGHTS - 1);
@@ -171,7 +172,7 @@ pub enum Effect {
     },
 }
 
-/// Returns whether two colours differ by less than 1.5 8-bit steps in each channel.
+/// Returns whether two colours differ by less than 1.5 steps of 8-bit sRGB in each channel.
 pub fn is_near(one: [f64; 3], other: [f64; 3]) -> bool {
     let step = |light| Curve::Correct.step(light);
     (0..3).all(|i| (one[i] - other[i]).abs() < 1.5 * f64::max(step(one[i]), step(other[i])))

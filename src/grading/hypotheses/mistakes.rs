@@ -66,9 +66,9 @@ const fn row(
     }
 }
 
-/// Writes a row of the table of mistakes. It saves repeating the text that several similar rows
-/// have in common. The first word selects this text. The other arguments are the part of the
-/// message that differs, and a number or a function.
+/// Expands to a row of the table of mistakes. Several rows are alike except for a part of the
+/// message and a number or function. The first word of the arguments names the kind of row. The
+/// other arguments are the parts that differ.
 #[rustfmt::skip]
 macro_rules! family {
     (window $window:literal, $aspect:expr) => { row("aspect", InAreas, concat!("the picture is stretched: its window is ", $window, ", though the picture is not"), WINDOW, |c, _| set_aspect(c, $aspect)) };

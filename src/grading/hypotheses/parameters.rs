@@ -124,7 +124,8 @@ impl Owner {
         }
     }
 
-    /// Returns the indices of the later objects that the same block of the file describes.
+    /// Returns the indices of the objects after this one that come from the same block of the
+    /// scene's file.
     fn others(self, scene: &Scene) -> Range<usize> {
         let Self::Object(index) = self else {
             return 0..0;
@@ -304,7 +305,8 @@ impl Parameter {
             Owner::Object(index) => pixel_of(&scene.objects[index]).unwrap_or(0.0),
             _ => match scene.camera.view {
                 View::Lookat(point) => pixel_at(point),
-                // Without a point to look at, the width of a pixel is taken at the nearest object.
+                // If the camera looks along a direction, no point is given at which to compute the
+                // width of a pixel. So the nearest object is used.
                 View::Direction(_) => {
                     let pixels = scene.objects.iter().filter_map(pixel_of);
                     pixels.reduce(f64::min).unwrap_or(projection.pitch)

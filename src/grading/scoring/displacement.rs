@@ -15,10 +15,11 @@ use super::{linear_system::solve, prediction::Prediction};
 /// deviations. A χ² variable with six degrees of freedom exceeds 50 with a probability below 10⁻⁸.
 const CHANCE: f64 = 50.0;
 
-/// Displacement of edges that is attributed to samples at the same places in all pixels, in pixels,
-/// if each pixel has one sample. For n samples, it is divided by n. The mean of such samples may
-/// lie off the pixel's middle; in a Hammersley set, the distance is 1/(2n). The value is greater
-/// than 1/2 because n is estimated from noise, and is overestimated for such samples.
+/// Maximum displacement of edges, in pixels, that is attributed to the choice of samples if there
+/// is one sample per pixel. For n samples per pixel, it is divided by n. If all pixels use the same
+/// sample positions, the mean of these may differ from the pixel's middle: in a Hammersley set, by
+/// 1/(2n). The value is greater than 1/2 because n is estimated from noise, and is overestimated in
+/// this case.
 const OFF_MIDDLE: f64 = 0.75;
 /// Maximum displacement that is attributed to a small number of samples per pixel, in pixels. A
 /// larger displacement counts as a mistake. With a larger limit, mistakes in pictures with few
@@ -41,9 +42,8 @@ const WIDE: f64 = 1.4;
 /// one sample. For n samples per pixel, it is divided by n. It is needed because few samples at the
 /// same places in all pixels make a correct picture less sharp.
 const WIDER: f64 = 3.0;
-/// Greatest amount by which a squared pixel width may lie below 1, the correct value, without being
-/// reported, in squared pixels. It holds for a picture without noise. With a larger value, pixels
-/// that are slightly too narrow would be overlooked.
+/// Tolerance of the squared pixel width below 1, the correct value, in squared pixels, in a picture
+/// without noise. With a larger tolerance, pixels that are slightly too narrow would be overlooked.
 const NARROW: f64 = 0.25;
 /// Extra tolerance of the squared pixel width below 1, in addition to [`NARROW`], in squared
 /// pixels, if each pixel has one sample. For n samples per pixel, it is divided by n. It is needed
@@ -169,9 +169,9 @@ impl Prediction<'_> {
         !is_exact || others.count() < CHANCE
     }
 
-    /// Returns the ratio of two sums over the pixels that mix several colours: the sum of their
-    /// squared differences, and the sum of their variances of one sample. With n independent
-    /// samples per pixel, the ratio is about 1/n. It is at most 1.
+    /// Returns the sum of the squared differences divided by the sum of the variances of one
+    /// sample, both over the pixels that mix several colours. With n independent samples per pixel,
+    /// the ratio is about 1/n. It is at most 1.
     pub fn share(&self) -> f64 {
         let (mut squares, mut variances) = (0.0, 0.0);
         for at in (0..self.observed.len()).filter(|&at| !self.is_flat(at)) {
@@ -222,8 +222,9 @@ impl Prediction<'_> {
     }
 
     /// Returns the displacement of each group of pixels, or `None` if it may be chance. `groups`
-    /// has the index of each pixel's group. `share` is the variance of a pixel's error relative to
-    /// that of one sample: 1/n for n samples per pixel. `is_coded` says that the picture is a JPEG.
+    /// contains the index of each pixel's group. `share` is the variance of a pixel's error divided
+    /// by the variance of one sample: 1/n for n samples per pixel. `is_coded` says that the picture
+    /// is a JPEG.
     pub fn displacements(
         &self,
         deviations: &[f64],

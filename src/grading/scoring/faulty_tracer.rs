@@ -17,8 +17,8 @@ use crate::{
     scene::{Checkerboard, Cuboid, Scene, Shape, Sphere},
 };
 
-/// Half the width, in metres, of a box that lacks the faces perpendicular to an axis. Along this
-/// axis it should be infinitely wide, so any value far beyond the scene works.
+/// Distance from the origin, in metres, to which a box reaches along an axis if two of its faces
+/// are missing. It should reach to infinity, so any value far beyond the scene works.
 const FAR: f64 = 1e9;
 
 /// Stride between the samples that are tested first, to find out whether a cell has one colour. A
@@ -59,8 +59,8 @@ pub struct FaultyTracer {
 }
 
 impl FaultyTracer {
-    /// Prepares a scene for tracing. `behaviour` has the mistakes of the tracer. `decoding` is the
-    /// curve by which it decodes colours.
+    /// Prepares a scene for tracing. `behaviour` says which mistakes the tracer makes. `decoding`
+    /// is the curve by which the tracer decodes colours.
     pub fn new(scene: &Scene, behaviour: Behaviour, decoding: Curve) -> Self {
         let mut projection = Projection::quick(&scene.camera, &scene.image);
         let right_projection = projection;
@@ -127,8 +127,8 @@ impl FaultyTracer {
             let column = (x - part.x) as usize;
             let is_beside = is_flat[column] || column > 0 && is_flat[column - 1];
             // The squares of a board may be half as large as a cell, and all tested places may then
-            // show one colour by chance. So the test is made only beside a cell of one colour. If
-            // there are few samples, taking all of them costs less than the test.
+            // show one colour by chance. So the test is made only beside a cell of one colour. It
+            // is not made if there are few samples, because taking all of them costs less.
             let mut probes = corners.iter().chain(places.iter().step_by(EACH));
             let is_first = |probe: &DVec2| self.color(corner + *probe) == first;
             if is_beside && places.len() > 8 && probes.all(is_first) {
@@ -289,9 +289,9 @@ impl FaultyTracer {
     }
 
     /// Returns the ray's parameter t at the visible hit of one object, or `None` if no hit is
-    /// visible. `crossings` contains t at both hits, the lesser first. `length` is the depth per
-    /// unit of t; or the distance per unit of t, if distances are compared with the near and far
-    /// planes.
+    /// visible. `crossings` contains t at both hits, the lesser first. `length` is the increase of
+    /// depth per unit of t. If the near and far planes are compared with distances, it is the
+    /// increase of distance.
     fn first(&self, crossings: [f64; 2], length: f64) -> Option<f64> {
         let counting = crossings.map(|t| Some(t).filter(|t| self.counts(*t, length)));
         match counting {

@@ -29,7 +29,7 @@ pub struct Grid {
 
 impl Grid {
     /// Covers a part of a picture with a grid. The part's longer side has at most `longest` cells.
-    /// If the part contains no complete cell of this size, each pixel becomes a cell.
+    /// If the part contains no complete cell of such a grid, each pixel becomes a cell.
     pub fn new(image: &Image, part: Area, longest: u32) -> Self {
         let point = |x: u32, y: u32| DVec2::new(f64::from(x), f64::from(y));
         let of = |factor: u32| {

@@ -20,8 +20,8 @@ use crate::{
     grading::hypotheses::STEP,
 };
 
-/// Side of a block of chroma, in pixels: it has 8 values, each of which spans 2 pixels if chroma
-/// has half the picture's resolution.
+/// Side of a block of chroma, in pixels, if chroma has half the picture's resolution. Along the
+/// side are 8 values, each of which spans 2 pixels.
 const BLOCK: usize = 16;
 
 /// Distance over which the colours of neighbouring pixels mix, in pixels, if chroma has half the

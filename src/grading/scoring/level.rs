@@ -39,7 +39,7 @@ pub struct Level<'a> {
     /// differs from this one.
     base: RefCell<Option<Arc<Rendering>>>,
     /// Rendering of the last hypothesis. The next hypothesis is rendered only where its picture
-    /// differs from this one or from `base`.
+    /// differs from this rendering and from that in `base`.
     last: RefCell<Option<Arc<Rendering>>>,
 }
 
@@ -66,9 +66,10 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// Returns a copy of the level with other observed light, for comparisons with sampled
-    /// predictions. The error that sampling causes in the prediction of one hypothesis is added.
-    /// Similar hypotheses have the same sampling error, so it cancels in their comparisons.
+    /// Returns a copy of the level for comparisons with sampled predictions. `sampled` and `exact`
+    /// are two predictions of one hypothesis. Their difference is the sampling error, which is
+    /// added to the observed light. Similar hypotheses have the same sampling error, so it cancels
+    /// in their comparisons.
     pub fn with_error(&self, sampled: &Prediction, exact: &Prediction) -> Self {
         let mut level = Self::new(self.grid, self.film, self.part, self.samples, self.jpeg);
         level.base = self.base.clone();
@@ -82,7 +83,7 @@ impl<'a> Level<'a> {
     }
 
     /// Renders a hypothesis about the program in the cells of the level's grid. Returns `None` if
-    /// it is cancelled or exceeds the budget of work.
+    /// the work is cancelled or exceeds its budget.
     pub fn render(&self, candidate: &Candidate, work: &Work) -> Option<Arc<Rendering>> {
         let known = [&self.base, &self.last].map(|one| one.borrow().clone());
         let known: Vec<_> = known.into_iter().flatten().collect();

@@ -35,7 +35,7 @@ pub struct Score {
     pub chi_squares: Vec<f64>,
     /// Sum of the squared differences between the picture and the prediction.
     pub squares: f64,
-    /// Part of the sum `squares` that noise and rounding explain.
+    /// Part of the sum of the squared differences that noise and rounding explain.
     pub noise: f64,
     /// Variance of a pixel's error relative to the variance of one sample: 1/n for n samples per
     /// pixel.
@@ -106,8 +106,9 @@ impl Prediction<'_> {
                 share = (share + above / below).clamp(1e-6, 1.0);
             }
         }
-        // Probability densities are converted to the light that viewers see. So predictions for
-        // different encodings are comparable.
+        // Predictions may assume different encodings, so they decode the observed light
+        // differently. Their probability densities are converted to densities of the light that
+        // viewers see, so that they can be compared.
         let stretch = |light: &f64| {
             let own = Curve::Correct.step(self.curve.seen(*light));
             libm::log(own / self.curve.step(*light))
@@ -132,7 +133,7 @@ impl Prediction<'_> {
             beyond += DVec3::select(has_several, square - one.rounding, DVec3::ZERO).element_sum();
         }
         // Noise that is less than that of 100 000 samples per pixel cannot be distinguished from
-        // rounding.
+        // rounding. The number of samples is then unknown.
         let is_known = beyond > 1e-5 * of_samples;
         Score {
             likelihood,
@@ -150,8 +151,8 @@ impl Prediction<'_> {
     /// deviation. `score` is the score of `self`.
     pub fn observed_share(&self, score: &Score, other: &Self) -> [f64; 2] {
         let mut deviations = self.deviations();
-        // Each variance is the greater one of the two predictions. But if they assume different
-        // encodings, their variances are not comparable, so those of `self` are used.
+        // The greater of the two predictions' variances is used. But if the predictions assume
+        // different encodings, their variances are not comparable, so those of `self` are used.
         let is_alike = self.curve == other.curve;
         if is_alike {
             let others = deviations.iter_mut().zip(other.deviations());

@@ -34,8 +34,8 @@ impl Moments {
         }
     }
 
-    /// Replaces the means and variances in an area. `self` has those of the cells of `part`, row by
-    /// row, and `own` has the new ones of the cells of `area`.
+    /// Replaces the means and variances in an area. `self` describes the cells of `part`, row by
+    /// row, and `own` describes those of `area`.
     pub fn put(&mut self, part: Area, area: Area, own: &Self) {
         for (from, (x, y)) in area.iter().enumerate() {
             let at = part.index(x, y);
@@ -62,8 +62,8 @@ impl Moments {
     }
 }
 
-/// Returns the least and the greatest value, for each channel, of all cells at most `around`
-/// columns and rows away from a cell. `values` has rows of `width` cells.
+/// Returns the least and the greatest values in the cells that are at most `around` columns and
+/// rows away from a cell, for each channel. A row of `values` contains `width` cells.
 pub fn range(values: &[DVec3], width: usize, at: usize, around: usize) -> [DVec3; 2] {
     let (x, y) = (at % width, at / width);
     let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);

@@ -26,7 +26,7 @@ const FULL: f64 = 0.99;
 /// more.
 const EMPTY: f64 = 0.01;
 /// Relative difference below which two factors between observed and predicted light count as equal.
-/// Where a channel's light exceeds 0.01 (`EMPTY`), rounding it to a byte changes it by at most
+/// If a channel's light exceeds 0.01 (`EMPTY`), rounding it to a byte changes its factor by at most
 /// about 3 %.
 const ALIKE: f64 = 0.03;
 
@@ -91,10 +91,10 @@ fn map_channels(
 ) {
     let slope_of = |mean: f64, variance: f64| {
         let mean = mean.clamp(0.0, 1.0);
-        // Mean slope of the curve over the range of light that noise spans. Noise is the standard
-        // deviation of one sample, or an 8-bit step if this is greater. A clipped curve is flat on
-        // one side, which reduces the mean slope. So the slope is also computed for a quarter of
-        // the noise, and the steeper one is used.
+        // Mean slope of the curve over the range of light that noise spans. The noise is taken to
+        // be the standard deviation of one sample, or an 8-bit step if this is greater. A clipped
+        // curve is flat on one side, which reduces the mean slope. So the slope is also computed
+        // for a quarter of the noise, and the steeper slope is used.
         let slope = |part: f64| {
             let by = variance.sqrt().max(STEP) * part;
             let (low, high) = ((mean - by).max(0.0), (mean + by).min(1.0));
@@ -117,8 +117,8 @@ fn map_channels(
     }
 }
 
-/// Maximum relative deviation of an estimated factor from a power of 2 for it to count as that
-/// power. Rounding to bytes changes the estimate by less.
+/// Maximum relative deviation of an estimated factor from a power of 2 at which the factor is
+/// replaced by the power. Rounding to bytes changes the estimate by less.
 const POWER: f64 = 0.005;
 
 /// Estimates the factor between observed and predicted light, from cells that should show one
@@ -151,7 +151,8 @@ fn gain(observed: &[DVec3], mean: &[DVec3], variance: &[DVec3], function: &Tabul
         .iter()
         .fold([0.0; 2], |sums, pair| [0, 1].map(|i| sums[i] + pair[i]));
     let gain = seen / mean;
-    // Programs that divide by a wrong number of samples are mostly wrong by a power of 2.
+    // Programs that divide by a wrong number of samples usually multiply light by a power of 2. So
+    // an estimate close to such a power is replaced by it.
     let power = libm::exp2(libm::log2(gain).round());
     let is_power = (gain / power - 1.0).abs() < POWER;
     match gain {
@@ -339,9 +340,9 @@ impl<'a> Prediction<'a> {
             .collect()
     }
 
-    /// Returns the standard deviations of the differences of all cells, channel by channel, as if
-    /// each cell had one sample. Each is the greatest standard deviation of a sample in the cell
-    /// and its neighbours, so that it also holds if edges are displaced by a cell.
+    /// Returns the standard deviations of the differences of all cells, channel by channel, if
+    /// there is one sample per cell. The greatest deviation among a cell and its neighbours is
+    /// used, so that it is large enough even if edges are displaced by a cell.
     pub fn deviations(&self) -> Vec<f64> {
         let cells = 0..self.observed.len();
         let deviations = cells.flat_map(|at| {

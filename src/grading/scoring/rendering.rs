@@ -19,9 +19,9 @@ use crate::{
     scene::Scene,
 };
 
-/// Number of samples per cell if the program traces rays wrongly, which cannot be rendered exactly.
-/// It is a Fibonacci number, because the samples form a Fibonacci lattice. More samples are less
-/// noisy, but take longer.
+/// Number of samples per cell if the program traces rays wrongly. The picture of such a program
+/// cannot be rendered exactly. The number is a Fibonacci number, because the samples form a
+/// Fibonacci lattice. With more samples, pictures are less noisy, but take longer.
 const SAMPLES: usize = 34;
 
 /// Fraction of a cell's area in which the faulty tracer typically overlooks another colour. The
@@ -95,8 +95,8 @@ impl Candidate {
     }
 
     /// Renders the hypothesis in the cells of a grid: exactly, or with `samples` samples per cell.
-    /// Where a rendering in `known` shows the same, it is copied instead. Returns `None` if it is
-    /// cancelled or exceeds the budget of work.
+    /// Cells that a rendering in `known` shows in the same way are copied from it. Returns `None`
+    /// if the work is cancelled or exceeds its budget.
     pub fn render(
         &self,
         grid: &Grid,
@@ -232,8 +232,8 @@ fn completed(
 }
 
 /// Replaces exact means and variances by sampled ones in the cells where the program's faults make
-/// a difference. `own` has the samples of a correct tracer, and `other` those of the faulty tracer.
-/// A cell is replaced by `other` if the two differ in it.
+/// a difference. `own` is sampled by a correct tracer, and `other` by the faulty tracer. A cell is
+/// replaced if `own` and `other` differ in it.
 fn replaced_where_they_differ(mut correct: Moments, own: &Moments, other: &Moments) -> Moments {
     for at in 0..other.mean.len() {
         let variance = other.variance[at];

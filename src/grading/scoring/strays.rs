@@ -24,9 +24,9 @@ pub struct Strays {
     pub pixels: Vec<usize>,
     /// Sum of the squared differences of the pixels in `pixels`.
     square: f64,
-    /// Pixels that should mix several colours. For each: its index, the part of its squared error
-    /// that neither rounding nor the uncertainty of the predicted mean can explain, and the
-    /// expected variance of one sample.
+    /// Pixels that should mix several colours. An entry contains the pixel's index, the part of its
+    /// squared error that neither rounding nor the uncertainty of the predicted mean can explain,
+    /// and the expected variance of one sample.
     edges: Vec<(usize, f64, f64)>,
 }
 
@@ -66,8 +66,8 @@ impl Strays {
     }
 }
 
-/// Returns whether sampling may explain a sum of squared errors. The second number is the sum that
-/// is expected of sampling.
+/// Returns whether sampling may explain a sum of squared errors. `expected` is the mean of this sum
+/// if the errors come from sampling.
 fn is_noise((squares, expected): (f64, f64)) -> bool {
     // Light is at most 1, so the squared error of a pixel, summed over three channels, never
     // exceeds 3. Therefore its variance is at most three times its expected value.
@@ -97,8 +97,8 @@ impl Prediction<'_> {
     }
 
     /// Returns whether the pixels of a group in a JPEG are too bright or too dark on average. Only
-    /// pixels that should show one colour are compared. `groups` has the group of each pixel. JPEG
-    /// coding may change single pixels a lot, but it hardly changes their mean.
+    /// pixels that should show one colour are compared. `groups` contains the group of each pixel.
+    /// JPEG coding may change single pixels a lot, but it hardly changes their mean.
     pub fn is_tinted(&self, groups: &[usize]) -> bool {
         let all = groups.iter().max().map_or(0, |most| most + 1);
         // For each group, the sum of the differences divided by their variances, and the sum of the
@@ -120,9 +120,10 @@ impl Prediction<'_> {
     }
 
     /// Returns how much the light of a pixel may change if edges move by half a pixel, for each
-    /// channel. At an edge in a neighbour, this is half the difference of the two colours. So it is
-    /// half the range of the means of the pixel and its neighbours, or the greatest standard
-    /// deviation of one sample in them, if this is greater.
+    /// channel. An edge that enters the pixel this far changes it by half the difference of the
+    /// colours on its two sides. So the result is half the range of the means of the pixel and its
+    /// neighbours. The greatest standard deviation of one sample in these pixels is used instead if
+    /// it is greater.
     fn reach(&self, at: usize) -> DVec3 {
         let [least, most] = range(&self.moments.mean, self.width, at, 1);
         let [_, variance] = range(&self.moments.variance, self.width, at, 1);

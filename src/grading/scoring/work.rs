@@ -38,7 +38,7 @@ pub const COMPARISON: f64 = 1.0;
 pub const RESIDUAL: f64 = 8.0;
 
 /// Tolerance of the exact pictures that 8-bit pictures are compared to, in light from 0 to 1. It is
-/// about a three hundredth of the smallest step of 8-bit sRGB, so it does not change a verdict.
+/// about 1/300 of the smallest step of 8-bit sRGB, so it does not change a verdict.
 pub const TOLERANCE: f64 = 1e-6;
 
 /// Work spent on judging a picture, and its limit.
@@ -102,8 +102,8 @@ impl<'a> Work<'a> {
         (self.limit.get() - self.spent.get()).max(0.0)
     }
 
-    /// Computes the exact means and variances of a part of a scene's picture. Returns `None` if it
-    /// is cancelled or exceeds the limit on work.
+    /// Computes the exact means and variances of a part of a scene's picture. Returns `None` if the
+    /// work is cancelled or exceeds its limit.
     pub fn exact_moments(&self, scene: &Scene, decoding: Curve, part: Area) -> Option<Moments> {
         let world = World::new_unless(scene, self.cancel).ok()?;
         let integrator = Integrator::for_values(&world, numbers(decoding))

@@ -1,9 +1,10 @@
-//! Adds to a set of mistakes one that is visible only at edges.
+//! Tests whether one more mistake, which is visible only at edges, makes a hypothesis explain the
+//! picture.
 //!
 //! In: a hypothesis about the program that is close to the picture. Out: the hypothesis, perhaps
 //! with one more mistake, if it explains the picture. The mistake may be a row of the table that is
-//! visible only at edges, or a wrong pixel width. A row is tested on single pixels: the change of
-//! the picture that it predicts must be observed.
+//! visible only at edges, a shift of all samples, or a wrong pixel width. A row predicts a change
+//! of the picture, and is accepted only if this change is observed in the pixels.
 
 use std::sync::Arc;
 
@@ -44,19 +45,20 @@ const CODED_ID: &str = "averaged_encoded";
 /// width is not named, because a slight blur may hide the effect of another mistake.
 const LEFT_BY_FILTER: f64 = 0.5;
 
-/// Factors by which an estimated pixel width greater than 1 is multiplied. Of the products, the
-/// most likely width is taken. More factors would find the width more precisely, but take longer.
+/// Factors by which an estimated pixel width greater than 1 is multiplied. The most likely of the
+/// products is used as the width. More factors would find the width more precisely, but take
+/// longer.
 const WIDTHS: [f64; 4] = [0.7, 0.8, 0.9, 1.0];
 /// Least width of pixels that are reported as too wide, in pixels. A smaller estimate is raised to
 /// it, so that it differs from the correct width, 1.
 const LEAST_WIDE: f64 = 1.1;
-/// Widths, in pixels, that are tried for pixels that are too narrow. The most likely one is taken.
+/// Widths, in pixels, that are tried for pixels that are too narrow. The most likely width is used.
 /// A few values suffice, because edges determine a narrow width only roughly.
 const NARROW_WIDTHS: [f64; 3] = [0.25, 0.5, 0.7];
 
-/// Reciprocal of the fraction of a picture's pixels, 1/50 or 2 %, that may be wrong before mistakes
-/// that are weakly visible everywhere are tried, even if the wrong pixels do not lie at edges. With
-/// a smaller number, such mistakes would be overlooked in more pictures.
+/// Divisor of the number of pixels: mistakes that are weakly visible everywhere are tried if more
+/// than 1/50 of the pixels are wrong, or if the wrong pixels lie at edges. With a smaller divisor,
+/// such mistakes would be overlooked in more pictures.
 const MUCH_WRONG: usize = 50;
 
 /// Maximum difference between the estimated shift of all edges in the picture and the shift that a
@@ -64,9 +66,10 @@ const MUCH_WRONG: usize = 50;
 /// a shift of more than a pixel, the difference is relative to the shift.
 const MAX_SHIFT_ERROR: f64 = 0.5;
 
-/// Limit of a shift of all samples, in pixels, below which it need not be one of the table. The
-/// mean of four random samples, if they are the same in all pixels, lies within it with a
-/// probability of more than 95 % for each direction.
+/// Threshold of a shift of all samples in x and in y, in pixels. A smaller shift is tried as a
+/// mistake of its own, even if no row of the table of mistakes causes it. If all pixels use the
+/// same four random sample positions, the mean of these is shifted by less than this in each
+/// direction with a probability of more than 95 %.
 const MAX_SLIGHT_SHIFT: f64 = 0.35;
 
 /// Maximum number of mistakes that are tried to explain a shift of all edges, those with the most
@@ -121,8 +124,9 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
     let is_shifted = candidate.behaviour.is_shifted();
     let by = residual.displacement.filter(|_| !is_shifted);
     let rows = rows.chain(by.into_iter().flat_map(|off| shifts(candidate, off.by)));
-    // A number of the scene that is off so little as to move all edges by a part of a pixel is less
-    // likely than samples that lie beside the middle of their pixels.
+    // If all edges are shifted by a part of a pixel, the samples are more likely not centred in
+    // their pixels than a number of the scene is slightly wrong. So the shift itself is tried as a
+    // mistake.
     let is_slight = |by: &[f64; 2]| by[0].abs().max(by[1].abs()) < MAX_SLIGHT_SHIFT;
     let slight = by.map(|off| off.by.map(|length| (100.0 * length).round() / 100.0));
     let slight = slight.filter(is_slight).map(Mistake::Shift);

@@ -78,9 +78,9 @@ const MAX_SUSPECTS: usize = 12;
 /// beside it to that of the worst object. Smaller errors are mostly noise.
 const SUSPECT_RATIO: f64 = 0.03;
 
-/// Searches for the mistakes that explain a picture best: at most `most`, and in addition some that
-/// are visible only at edges. Returns the best hypothesis, i.e. set of mistakes, and whether it
-/// explains the picture.
+/// Searches for the mistakes that explain a picture best. Tries sets of at most `most` mistakes,
+/// and adds a few that are visible only at edges. Returns the best hypothesis, i.e. set of
+/// mistakes, and whether it explains the picture.
 pub fn run(judge: &Judge, most: usize) -> Result<Option<(Judged, bool)>, Cancelled> {
     let mut search = Search {
         judge,
@@ -252,7 +252,8 @@ impl Search<'_> {
         let fitted = judge.fit_all(candidate, &judge.coarse, [2, 1]);
         let fitted = fitted.map_or_else(|| candidate.clone(), |(fitted, _)| fitted);
         let mut judged = judge.judged(&fitted, &judge.middle)?;
-        // A hypothesis far from the picture, or much farther than another, is not fitted further.
+        // A hypothesis whose error is large, or much larger than that of another hypothesis, is not
+        // fitted further.
         let left = left(judge, judged.candidate()).unwrap_or(f64::INFINITY);
         self.least_left = self.least_left.min(left);
         let most = NEAR_RATIO.min(f64::max(WORSE * self.least_left, NEGLIGIBLE));
@@ -391,8 +392,9 @@ struct Extension<'a> {
 }
 
 impl<'a> Extension<'a> {
-    /// Functions that extend a set of mistakes, each by mistakes of another kind, the cheapest
-    /// first. Each returns hypotheses with their differences from the picture on the coarsest grid.
+    /// Functions that extend a set of mistakes by one kind of mistakes each. The cheapest function
+    /// comes first. Each returns hypotheses with their differences from the picture on the coarsest
+    /// grid.
     const KINDS: [fn(&Self) -> Rated; 3] = [Self::rows, Self::numbers, Self::joint];
 
     /// Prepares the extension of a set of mistakes. Returns `None` if the budget of work is used
@@ -430,8 +432,8 @@ impl<'a> Extension<'a> {
             return best_of_each_id(rows);
         }
         // The few samples of the coarsest grid cannot show where a checkerboard with small squares
-        // ends. So single mistakes are compared on an exact picture, too, and the differences are
-        // scaled to those of the coarsest grid.
+        // ends. So single mistakes are compared on an exact picture, too. Their differences on it
+        // are scaled, so that they can be compared with differences on the coarsest grid.
         let Some((exactly, _)) = judge.with_difference(candidate.clone(), &judge.coarse) else {
             return best_of_each_id(rows);
         };

@@ -25,12 +25,13 @@ const TINY: u32 = 32;
 /// grid takes longer. A coarser one determines the numbers less well.
 const COARSE: u32 = 48;
 /// Number of cells along the longer side of the grid on which sets of mistakes are judged. A finer
-/// grid takes longer. A coarser one distinguishes similar mistakes less well, although single
-/// pixels decide in the end.
+/// grid takes longer. A coarser one distinguishes similar mistakes less well. The final decision
+/// does not depend on it, because it is made on single pixels.
 const MIDDLE: u32 = 96;
 
-/// Change of the picture, in cells, by which a number is varied to find its derivative. A smaller
-/// change is less visible, and a larger one is less linear.
+/// Movement of the picture, in cells, that determines by how much a number is varied to find its
+/// derivative. A smaller movement is less visible. With a larger one, the picture's change is less
+/// proportional to the number's change.
 pub const CELL_STEP: f64 = 0.25;
 
 /// Number of samples per cell of the coarsest grid, on which mistakes are selected. It is a
@@ -52,7 +53,8 @@ pub struct Judge<'a> {
     /// The central crop at full resolution; `None` if the picture has no more pixels than the crop.
     central: Option<Level<'a>>,
     pub work: Work<'a>,
-    /// Mistakes of each of the last few hypotheses, and what the hypothesis left unexplained.
+    /// The last few hypotheses, given by their mistakes, each with the errors in the picture that
+    /// it does not explain.
     pub residuals: RefCell<VecDeque<(Vec<Mistake>, Residual)>>,
     /// Squared difference between the picture and that of a correct program, on the grid `middle`.
     /// Errors that sampling can explain are ignored. The errors of hypotheses are divided by it.
@@ -214,7 +216,8 @@ impl<'a> Judge<'a> {
 
     /// Returns for each cell of a grid the index of the object in its middle, or `None` for the
     /// background. It is the object that a program shows there if it renders the hypothesis's scene
-    /// correctly and then arranges pixels by `layout`. If it is cancelled, all cells are `None`.
+    /// correctly and then arranges pixels by `layout`. If the work is cancelled, all cells are
+    /// `None`.
     pub fn labels(&self, candidate: &Candidate, layout: Layout, grid: &Grid) -> Vec<Option<usize>> {
         let scene = candidate.drawn_correctly().drawn(grid);
         let Ok(world) = World::new_unless(&scene, self.work.cancel) else {
@@ -256,8 +259,8 @@ impl<'a> Judge<'a> {
         self.fit(candidate, &all, level, CELL_STEP, rounds)
     }
 
-    /// Fits the numbers of the mistake that `start` has in addition to those of `from`. Returns the
-    /// remaining difference and the fitted hypothesis.
+    /// Fits only the numbers of the mistake that was added last: `start` is `from` with this
+    /// mistake. Returns the remaining difference and the fitted hypothesis.
     pub fn fit_last(
         &self,
         from: &Candidate,
@@ -302,9 +305,9 @@ impl<'a> Judge<'a> {
 }
 
 /// Returns the price of `fitted` parameters, which is part of a hypothesis's cost. A parameter has
-/// the price of half the logarithm of the number of cells. Even if only a part of the picture is
-/// judged, the number is that of the whole picture, because almost anything could be fitted to a
-/// few pixels.
+/// the price of half the logarithm of the number of cells. All cells of the whole picture are
+/// counted even if only a part of it is judged, because almost anything could be fitted to a few
+/// pixels.
 pub fn price(level: &Level, fitted: usize) -> f64 {
     let [width, height] = level.grid.size.map(f64::from);
     0.5 * fitted as f64 * libm::log(width * height)

@@ -20,9 +20,9 @@ pub struct Fitted {
     pub numbers: Vec<f64>,
     /// Sum of the absolute differences that remain.
     pub left: f64,
-    /// Standard deviation of each number, computed from the standard deviations of the picture's
-    /// differences that [`fit`] was given. It is meaningful only after a round that minimises
-    /// Huber's loss.
+    /// Standard deviation of each fitted number. It follows from the standard deviations of the
+    /// differences, which are an argument of [`fit`]. It is meaningful only after a round that
+    /// minimises Huber's loss.
     pub errors: Vec<f64>,
 }
 
@@ -57,9 +57,9 @@ impl Loss {
 ///
 /// First, the sum of squared differences is minimised, because it is less likely to have several
 /// minima. Then Huber's loss is minimised, in units of the standard deviations, so that errors that
-/// no numbers explain do not distort the fit. `rounds` has two maximum numbers of rounds: for the
-/// squared differences, and for Huber's loss. Returns `None` if `trial` does for the numbers
-/// `start`.
+/// no numbers explain do not distort the fit. `rounds` contains two maximum numbers of rounds: for
+/// the squared differences, and for Huber's loss. Returns `None` if `trial` returns `None` for the
+/// numbers `start`.
 pub fn fit(
     start: Vec<f64>,
     steps: &[f64],

@@ -1,6 +1,6 @@
 //! Finds the set of mistakes that explains a picture.
 //!
-//! In: a picture and its scene, as a `judge`, which has the picture at several resolutions and a
+//! In: a picture and its scene, as a `judge`, which holds the picture at several resolutions and a
 //! budget of work. Out: the best hypothesis about the program, and whether it explains the picture.
 //! A hypothesis explains the picture if its `residual`, i.e. what it leaves unexplained, is
 //! sampling noise.

@@ -122,8 +122,8 @@ fn suspected(candidate: &Candidate, suspects: &[usize]) -> Vec<Parameter> {
             let [own, other] = [object, suspect].map(|index| &candidate.scene.objects[index]);
             object == suspect || own.is_beside(other)
         }),
-        // A wrong camera moves all objects. So the camera is not suspected if a single object is,
-        // unless this object is a checkerboard, which may fill most of the picture.
+        // A wrong camera moves all objects. So the camera is not suspected if only one object is
+        // suspected, unless this object is a checkerboard, which may fill most of the picture.
         Owner::Camera if !matches!(parameter.fields[0], "near" | "far") => match suspects {
             [sole] if candidate.scene.objects.len() > 1 => is_board(candidate, *sole),
             _ => true,
@@ -138,7 +138,7 @@ fn suspected(candidate: &Candidate, suspects: &[usize]) -> Vec<Parameter> {
 
 /// Returns for each given colour the one that the picture shows instead: the median over the pixels
 /// in which only the given colour is predicted. Keeps the given colour if there are no such pixels.
-/// `numbers` has three channels for each given colour, from 0 to 255.
+/// `numbers` contains three channels for each given colour, from 0 to 255.
 fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
     let color = |own: &[f64; 3]| {
         let light = DVec3::from(Color { srgb: *own }.to_linear());
@@ -163,8 +163,9 @@ fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
 }
 
 /// Returns starting values for the depth of the near or far plane: its present depth, and depths
-/// around the distance of the point that the camera looks at. If the camera has no such point, it
-/// is the distance of the origin from the eye. Each depth is 1.2 times the one before.
+/// around a reference distance. Each of these is 1.2 times the one before. The reference is the
+/// distance from the eye to the point that the camera looks at, or to the origin if there is no
+/// such point.
 fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
     const FROM: i32 = -12;
     const TO: i32 = 24;

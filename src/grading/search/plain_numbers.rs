@@ -15,9 +15,9 @@ use crate::{
     scene::Scene,
 };
 
-/// Displacement of an edge, in pixels, that rounding a number may cause in the first round of
-/// rounding. Each further round allows less, so numbers become longer. With a larger value, shorter
-/// numbers are tried first, but more of them are rejected.
+/// Maximum displacement of an edge, in pixels, that rounding a number may cause in the first round
+/// of attempts. Each further round allows less, so numbers become longer. With a larger value,
+/// shorter numbers are tried first, but more of them are rejected.
 const TENTH: f64 = 0.1;
 /// Maximum number of rounds of rounding. Each round allows a quarter of the displacement of the
 /// round before. The fifth allows 0.0004 pixels, so more rounds would hardly change a picture.
@@ -39,7 +39,7 @@ pub fn plain(judge: &Judge, candidate: &Candidate) -> Candidate {
     shortened(judge, &own).unwrap_or(own)
 }
 
-/// Replaces fitted numbers by the scene's own as long as the picture is explained as well.
+/// Replaces fitted numbers by the scene's own if the picture is then explained equally well.
 fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
     let (level, scene) = (judge.fitting(candidate), judge.scene);
     let is_explained = judge.explains(candidate);
@@ -82,10 +82,12 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
 }
 
 /// Returns variants of a field's wrong numbers in which more numbers are the scene's own. The other
-/// numbers are free, i.e. may be fitted again. Of a vector, one or two coordinates are free. Of
-/// `eye` and `lookat` together, one point is free. Variants with few free numbers come first. Each
-/// variant comes with the indices of its free numbers. Before all others come variants in which a
-/// slip of the hand changes one number of the scene, and none is free.
+/// numbers are free, i.e. may be fitted again. In a vector, one or two coordinates are free. In
+/// `eye` and `lookat` together, one point is free. Each variant comes with the indices of its free
+/// numbers.
+///
+/// Variants with few free numbers come first. The very first ones have no free number: they are the
+/// scene's numbers, one of which is changed by a slip of the hand.
 fn plainer(
     scene: &Scene,
     parameter: &Parameter,
@@ -130,8 +132,9 @@ fn plainer(
     [slips(scene, parameter, numbers), fewer].concat()
 }
 
-/// Returns the scene's numbers with a slip of the hand in one of them, if that moves the picture
-/// by less than a pixel from where `numbers` show it.
+/// Returns variants of the scene's numbers in which one number is changed by a slip of the hand.
+/// Leaves out variants whose picture is shifted by a pixel or more from the picture that `numbers`
+/// make.
 fn slips(
     scene: &Scene,
     parameter: &Parameter,
@@ -169,9 +172,9 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
     let level = judge.fitting(candidate);
     let (_, fitted) = judge.fit_all(candidate, level, [0, 1])?;
     let long = judge.judged(candidate, level)?;
-    // Shortened numbers no longer count as fitted, so a hypothesis with them saves the prices of
-    // the fitted numbers. Therefore its cost, which does not contain these savings yet, may exceed
-    // that of the long numbers by the saved prices.
+    // A shortened number no longer counts as fitted, so its price is no longer part of the cost.
+    // `judged` still adds these prices to the cost of shortened numbers, so this cost may exceed
+    // that of the long numbers by the prices.
     let most = long.cost + price(level, fitted.numbers.len());
     let steps = candidate.steps(1.0);
     let rounded_to = |part: f64| {

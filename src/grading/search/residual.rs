@@ -6,9 +6,9 @@ use crate::grading::{
     scoring::{Displacement, Prediction, work},
 };
 
-/// Reciprocal of the fraction of a picture's pixels that may be wrong although a hypothesis is
-/// correct. It is used if the prediction is not exact, i.e. if it was sampled or the picture is a
-/// JPEG. Chosen by trial on pictures with known mistakes.
+/// Divisor of the number of pixels: up to 1/4000 of the pixels may be wrong although a hypothesis
+/// is correct. It is used if the prediction is not exact, i.e. if it was sampled or the picture is
+/// a JPEG. Chosen by trial on pictures with known mistakes.
 const PIXELS_PER_MISS: usize = 4000;
 
 /// Distance from an edge, in pixels, within which a wrong pixel is attributed to the edge. It
@@ -17,9 +17,9 @@ const EDGE_REACH: usize = 3;
 /// Distance from an edge, in pixels, within which a wrong pixel of a JPEG is attributed to the
 /// edge. It is the side of a JPEG's blocks.
 const CODED_EDGE_REACH: usize = 8;
-/// Reciprocal of the fraction of wrong pixels that may lie far from all edges, so that errors are
-/// still attributed to edges. A wide pixel filter leaves weak traces far from an edge. Chosen by
-/// trial.
+/// Divisor of the number of wrong pixels: errors are attributed to edges if at most 1/10 of the
+/// wrong pixels lie far from all edges. Some may, because a wide pixel filter leaves weak traces
+/// far from an edge. Chosen by trial.
 const PIXELS_PER_INSIDE: usize = 10;
 
 /// Greatest displacement of all edges together that is ignored, in pixels. Rounded numbers in a
@@ -30,9 +30,9 @@ const IGNORED: f64 = 0.06;
 /// pixel has one sample. For n samples per pixel, it is divided by n. Chosen by trial.
 const IGNORED_WITH_ONE_SAMPLE: f64 = 0.06;
 
-/// Greatest displacement of the edges of a single object that is ignored, in pixels. For n samples
-/// per pixel, it is a + b/√n, where a is the first number and b is the second. In a JPEG, b is the
-/// third, because coding adds noise. The distance of samples on a regular grid is 1/√n. So they may
+/// Coefficients a, b and c of a limit in pixels. If the edges of a single object are displaced by
+/// less than the limit, this is ignored. For n samples per pixel, the limit is a + b/√n, or a +
+/// c/√n in a JPEG, because coding adds noise. Samples on a regular grid are 1/√n apart, so they may
 /// displace an edge parallel to the grid by up to 0.5/√n.
 const IGNORED_OF_OBJECT: [f64; 3] = [0.12, 0.5, 0.7];
 
@@ -133,8 +133,8 @@ fn residual_of(judge: &Judge, candidate: &Candidate, prediction: &Prediction) ->
 }
 
 /// Returns the displacement of the picture, or of the object that is displaced most, and the width
-/// of the pixel filter. Each is `None` if chance or few samples may explain it. `groups` has for
-/// each pixel the object that is seen in it.
+/// of the pixel filter. Each is `None` if chance or few samples may explain it. `groups` contains
+/// the index of the object that is seen in each pixel.
 fn displacement_and_width(
     judge: &Judge,
     candidate: &Candidate,
@@ -143,8 +143,8 @@ fn displacement_and_width(
 ) -> (Option<Displacement>, Option<f64>) {
     let level = &judge.fine;
     let share = match level.jpeg {
-        // The score of a JPEG is not used, because it would attribute the effect of coding on edges
-        // to few samples.
+        // In a JPEG, the number of samples is not estimated by the score, because coding also
+        // changes edges, which would look like fewer samples.
         Some(_) => prediction.share(),
         None => {
             let score = prediction.score();
@@ -170,8 +170,8 @@ fn displacement_and_width(
     let [none, of_one, of_coded] = IGNORED_OF_OBJECT;
     let more = level.jpeg.map_or(of_one, |_| of_coded);
     let of_object = none + more * share.sqrt();
-    // A wrong width is reported only once. After an effect on light, a pixel is no longer a mean of
-    // light, so its width is unknown.
+    // The width is not estimated if the hypothesis already contains a wrong width. After an effect
+    // on light, a pixel is no longer a mean of light, so its width is unknown.
     let is_width_explained = candidate.is_filtered() || !candidate.keeps_light();
     let width = (!is_width_explained)
         .then(|| prediction.pixel_width(&deviations, share, level.jpeg.is_some()));

@@ -11,9 +11,10 @@ use super::super::special::{Complex, cis, reduced_multiple, square, times};
 use super::{LATER_TERMS_SHARE, MODE_TERMS, amplitudes, last_mode, lerch::lerch, mode};
 use crate::math::{Double, Real};
 
-/// Limit of the truncation error of the sum over an edge along which the depth less than doubles,
-/// as a fraction of the pixel's tolerance. The limit [`LATER_TERMS_SHARE`] of the edge's own
-/// tolerance is used instead if it is larger. A thousandth hardly adds to the pixel's error.
+/// Maximum truncation error of a sum over an edge's crossings, as a fraction of the pixel's
+/// tolerance. It holds if the depth less than doubles along the edge. If the fraction
+/// [`LATER_TERMS_SHARE`] of the edge's own tolerance is larger, this is the limit instead. A
+/// thousandth hardly adds to the pixel's error.
 const LEVEL_TRUNCATION: f64 = 1e-3;
 /// Minimum ratio of the depth in the middle of an edge to the change of the depth along the edge,
 /// at which the depth is treated as constant. This approximation adds at most 4/STEADY, about 1e-6,
@@ -46,8 +47,8 @@ pub(super) fn sum(
     };
 
     let step = all.alternating_step();
-    // The two numbers e^(iφ), where φ is the phase of mode 1 at the first crossing, and at the
-    // place of the crossing that would follow the last one.
+    // e^(iφ) at two places: at the first crossing, and where the next crossing after the last one
+    // would be. φ is the phase of mode 1 there.
     let ends = [Double::from_f64(0.0), all.count].map(|j| cis(all.reduced_at(&j).hi * PI));
     let rotations = ends.map(square);
     let mut phases = ends;
@@ -94,9 +95,9 @@ pub(super) fn sum(
     } else {
         1000.0 * UNIT * w / lines + 2.4 / (w * lines)
     };
-    // Up to mode n, the phase of each end is rotated n/2 times by products with four roundings
-    // each. This makes 4n roundings for two ends, and the rotations themselves have as many. A mode
-    // has about 30 more operations at each end.
+    // Up to mode n, the phase of each end is rotated n/2 times, each time by a product with four
+    // roundings. For two ends, this makes 4n roundings. The rotations are computed numbers with as
+    // many roundings of their own. A mode has about 30 more operations at each end.
     let rounding = UNIT * (64.0 + 8.0 * last);
     BoundedSum {
         value,

@@ -57,14 +57,13 @@ const MODE_TERMS: usize = 3;
 /// Fourier modes are tried. Adding 20,000 crossings takes 60 µs, 3 ns each. Not critical: with 5000
 /// or 80,000, the measured running time changes by less than 10 %.
 const MAX_DIRECT: f64 = 20_000.0;
-/// Maximum number of an edge's crossings that are added one by one, and maximum number n of a
-/// Fourier mode. A bound of the remaining crossings or modes is added to the error. Adding 300,000
-/// crossings or modes takes a few milliseconds.
+/// Maximum number of an edge's crossings that are added one by one. It is also the maximum number n
+/// of a Fourier mode. A bound of the remaining crossings or modes is added to the error. Adding
+/// 300,000 crossings or modes takes a few milliseconds.
 const MAX_TERMS_ADDED: f64 = 300_000.0;
-/// Fraction of an edge's tolerance. If the sum over the edge's crossings is certainly at most this
-/// fraction of the tolerance, the sum is taken as 0, and its upper bound is added to the error.
-/// Skipped Fourier modes may use up the same fraction. The fractions of all kinds of errors must
-/// add up to less than 1.
+/// Fraction of an edge's tolerance up to which the sum over the edge's crossings is neglected: it
+/// is taken as 0, and its upper bound is added to the error. Skipped Fourier modes may use up the
+/// same fraction. The fractions of all kinds of errors must add up to less than 1.
 const SKIPPED_SHARE: f64 = 0.25;
 /// Fraction of an edge's tolerance that may be used up by leaving out terms of the edge's series
 /// ([`EdgeSeries`]): those that are not summed by Fourier modes. Not critical: with 0.0125 or 0.2,
@@ -74,10 +73,10 @@ const LATER_TERMS_SHARE: f64 = 0.05;
 /// pixel's budget, and need not be precise, because the budget only stops computations that take
 /// too long.
 const CROSSING_WORK: f64 = 1.0 / 16.0;
-/// Half of the approximate time to compute one Fourier mode, in units of about 50 ns. Multiplied by
-/// the number n of the last mode, it gives the work charged to the pixel's budget, because only odd
-/// numbers have modes. A rough value is enough, because the budget only stops computations that
-/// take too long.
+/// Half of the approximate time to compute one Fourier mode, in units of about 50 ns. It is
+/// multiplied by the number n of the last mode, and only half of the numbers up to n, the odd ones,
+/// have modes. The product is charged to the pixel's budget. A rough value is enough, because the
+/// budget only stops computations that take too long.
 const MODE_WORK: f64 = 1.0 / 4.0;
 
 /// Computes the alternating sum Σ (−1)^j·X over all crossings j of an edge with lines of the board.
@@ -133,7 +132,7 @@ pub(super) fn sum(
         let rest = receding::sum_from(all, crossing, series, share, budget);
         // `rest` is the sum from `crossing` to the horizon, in which the first term is positive. In
         // the whole sum, crossing j has the sign (−1)^j. If the edge ends before the horizon, the
-        // second `rest`, from the edge's end on, is subtracted from the first.
+        // sum from its end to the horizon is subtracted.
         let odd = crossing.floor().1 != (end == 1);
         sum.value += if odd { -rest.value } else { rest.value };
         sum.bound += rest.bound;

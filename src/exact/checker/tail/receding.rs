@@ -18,8 +18,8 @@ use crate::math::Double;
 /// measured. It decides after how many crossings the Fourier modes take over.
 const MODE_COST: f64 = 4.0;
 /// Number n up to which each Fourier mode is computed; a later mode is skipped if its bound is
-/// small. Measured: with 7, a picture of a horizon takes up to 20 % longer; with 123, it is not
-/// faster.
+/// small. Measured: with 7, a picture of a horizon takes up to 20 % longer; with 123, it does not
+/// become faster.
 const FIRST_MODES: f64 = 31.0;
 /// Fraction of an edge's tolerance that may be used up by leaving out all Fourier modes beyond the
 /// last computed one. The tolerance is divided among several kinds of errors. This kind gets the
@@ -140,8 +140,9 @@ pub(super) fn sum_from(
     // Σ n^−3 < 1.06.
     let curvature = 1.06 * 0.04 * u2 * u3 * (12.0 * first + 20.0 * second * u + 30.0 * third * u2);
     let later = bound_of(MODE_TERMS + 1..=series.terms);
-    // The exponential integrals are accurate to 1e-14, or 90 roundings, and the Lerch series V_s
-    // certainly to 500 roundings of w^−2. In mode n, the rotation of the phase adds n roundings.
+    // The exponential integrals have errors of up to 1e-14, or 90 roundings. The Lerch series V_s
+    // have errors of less than 500 roundings of w^−2. In mode n, the rotation of the phase adds n
+    // roundings.
     let rounding = 1000.0 * UNIT * first * all_terms * u2;
     BoundedSum {
         value,

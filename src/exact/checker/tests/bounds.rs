@@ -105,7 +105,8 @@ fn errors_of_boards_are_within_tight_bounds() {
                 &mut found.mixed
             };
             // The errors of the lines on the two sides of a square have opposite signs. A typical
-            // error is therefore smaller than the bound, by the root of the number of lines.
+            // error is therefore smaller than the bound, by a factor of the square root of the
+            // number of lines.
             let error = error.to_f64().value().abs();
             by.add(error, sum.bound, worst.lines(&PIXEL), &board);
             Ok(())

@@ -60,7 +60,7 @@ fn errors_of_batches_are_within_tight_bounds() {
                 let mut scene = scene(camera, &[board(0.25, square)]);
                 [scene.image.width, scene.image.height] = SIZE;
                 let oracle = Oracle::new(&scene, USUAL_SIZES);
-                // A few pixels of each picture are enough.
+                // A test of every pixel would take long, so only every 17th is tested.
                 for (pixel, sum) in sums(&World::new(&scene)).into_iter().step_by(17) {
                     let Some(sum) = sum else { continue };
                     let board = forms(&oracle, &pixel, eye, [0.25, square]);
