@@ -28,9 +28,9 @@ const SPLIT_SPACING_BYTES: usize = 256;
 pub struct Scan {
     /// All comments, in the order of the text.
     comments: Vec<Span>,
-    /// Offsets where a value may nest deeper than [`NESTING_LIMIT`]. Parentheses and minuses are
-    /// counted here, and a minus is counted even if it subtracts, which does not nest. Error
-    /// recovery therefore reads the items at these offsets again and counts exactly.
+    /// Offsets where a value may nest deeper than [`NESTING_LIMIT`]. The scan counts parentheses
+    /// and all minuses, although a minus that subtracts does not nest. Error recovery therefore
+    /// reads the items at these offsets again and counts exactly.
     pub deep: Vec<usize>,
     /// Ascending offsets where a text without mistakes can be split: after a `}` or before a `let`.
     /// Neighbouring offsets are at least [`SPLIT_SPACING_BYTES`] apart.
@@ -126,8 +126,9 @@ impl Scan {
         }
     }
 
-    /// Returns whether the text has no unclosed comment, no value that may nest too deep, and no
-    /// invisible character except the white space of the language.
+    /// Returns whether the text has no unclosed comment, no value that may nest too deep, no
+    /// carriage return without a line feed, and no invisible character except the white space of
+    /// the language.
     pub fn is_plain(&self, text: &str) -> bool {
         self.open_comment(text).is_none() && self.deep.is_empty() && self.odd_spaces.is_empty()
     }

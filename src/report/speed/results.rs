@@ -26,8 +26,8 @@ pub struct Request {
     /// Numbers of samples per pixel to measure. If empty, these are 1, 4, 16, …, as many as there
     /// is time for.
     pub samples: Vec<u64>,
-    /// Number of runs of each method with each number of samples. If `None`, as many as there is
-    /// time for.
+    /// Number of runs of each method with each number of samples. If `None`, there are as many runs
+    /// as there is time for.
     pub runs: Option<u64>,
     /// Errors, in linear light. For each error, the report estimates how many samples and how much
     /// time a method needs to reach it.
@@ -103,10 +103,10 @@ pub struct EndSlope {
 }
 
 impl EndSlope {
-    /// Minimum value of −`slope` at which the report says that more samples help, where `slope` is
-    /// that of the logarithm of the error over the logarithm of the number of samples. A smaller
-    /// value may come from noise in the measurement. For independent samples, the value is 0.5, far
-    /// above the minimum.
+    /// Minimum value of −`slope` at which the report says that more samples help. `slope` is that
+    /// of the error against the number of samples on logarithmic axes. A smaller value may come
+    /// from noise in the measurement. For independent samples, the value is 0.5, far above the
+    /// minimum.
     const LEAST: f64 = 0.05;
 
     /// Returns the factor by which the error falls if there are four times as many samples,
@@ -135,9 +135,9 @@ pub fn end<T>(points: &[T]) -> &[T] {
     &points[points.len().saturating_sub(3)..]
 }
 
-/// Minimum ratio of the last to the first of the numbers of samples to which a slope is fitted.
-/// Over less, the noise of the errors and the grid that a number happens to have (17 samples make a
-/// single row) would change the slope more than the method does.
+/// Minimum ratio of the largest to the smallest number of samples to which a slope is fitted. Over
+/// a smaller range, noise in the errors could change the slope more than the method does. So could
+/// the grid into which a method divides a pixel: for 17 samples, for example, it is a single row.
 pub const LEAST_SPAN: f64 = 4.0;
 
 /// Minimum difference between the slopes of a line's last two segments at which the line is said
@@ -156,8 +156,8 @@ pub fn end_slope(points: &[(f64, f64)]) -> Option<f64> {
         .flatten()
 }
 
-/// Returns the difference between the slopes of the last two segments of a line through `points` in
-/// logarithms. Returns `None` if there are fewer than three points, or if an error is 0.
+/// Returns the difference between the slopes of the last two segments of the line through `points`
+/// on logarithmic axes. Returns `None` if there are fewer than three points, or if an error is 0.
 pub fn bend(points: &[(f64, f64)]) -> Option<f64> {
     let [.., a, b, c] = *points else {
         return None;

@@ -87,8 +87,9 @@ impl<'s> Recovery<'_, 's> {
         is_one && !self.is_field_name(name)
     }
 
-    /// Returns whether the next token starts an item that shows that the `}` of `block` was
-    /// forgotten: the token is the first of its line and indented no more than the block.
+    /// Returns whether the `}` of `block` was probably forgotten before the next token. This is so
+    /// if the block's kind is known and the token starts an item, is the first of its line, and is
+    /// indented no more than the block.
     fn is_after_block(&mut self, block: &Block<'s>) -> bool {
         let start = self.here().start;
         (self.is(0, "let") || self.starts_block() || self.starts_item())
@@ -97,8 +98,8 @@ impl<'s> Recovery<'_, 's> {
             && self.indent(start) <= self.indent(block.span.start)
     }
 
-    /// Returns whether the next token stands where the block should be closed: it is the last of
-    /// its line, and an item or the end of the text follows.
+    /// Returns whether the next token stands where the block should be closed: it is the last token
+    /// of the text, or the last of its line, and an item follows on the next line.
     pub(super) fn is_end_of_block(&mut self) -> bool {
         let is_item = self.is(1, "let") || self.is_head(1);
         self.kind(1) == TokenKind::End || (self.is_on_new_line(1) && is_item)

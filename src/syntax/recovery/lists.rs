@@ -16,7 +16,7 @@ use crate::{
     },
 };
 
-/// Range of the number of values that a list may have.
+/// Permitted numbers of values in a list.
 type PartCount = RangeInclusive<usize>;
 
 /// A list as it was written.
@@ -249,7 +249,7 @@ impl<'s> Recovery<'_, 's> {
         let last = last.map(|element| &element.value);
         let last = last.filter(|value| value.kind != ValueKind::Bad);
         // If the last value is a sum or a product, the missing bracket may belong after any of its
-        // operands.
+        // operands, so the list is uncertain.
         let is_sure = last.is_none_or(|it| !matches!(it.kind, ValueKind::Chain { .. }));
         let fits = is_whole && is_sure && count.contains(&list.elements.len());
         let end = last.filter(|_| fits).map(|last| last.span.end);

@@ -4,8 +4,8 @@
 //! each mistake. This is a recursive-descent parser over the lexer's tokens. It reads items in
 //! `items`, fields in `fields`, indices in `repetition`, values in `values`, `adjacent` and
 //! `lists`, names in `names`, numbers in `numbers`, needless separators in `signs`, and constructs
-//! of other languages in `foreign`. For an item without mistakes, its tree is the same as that of
-//! the generated parser pest. It follows three rules:
+//! of other languages in `foreign`. From an item without mistakes, this parser makes the same tree
+//! as pest, the generated parser. Three rules apply:
 //!
 //! - Where a token fits nowhere, reading continues at the next field, line, item or closing brace
 //!   (`resync`).
@@ -145,10 +145,10 @@ impl<'w, 's> Recovery<'w, 's> {
         self.read_to
     }
 
-    /// Reads an item again that starts at `start` and follows the grammar but may have been meant
-    /// otherwise. Returns the item's end if the new reading explains the text better: by fields
-    /// that the block has, or by a comment or a function of another language. Otherwise, restores
-    /// the items and problems and returns `None`.
+    /// Reads the item at `start` again, which follows the grammar but may have been meant
+    /// otherwise. Returns the item's end if the new reading is better: a block then has only known
+    /// fields, or the mistakes of a definition are only comments or functions of other languages.
+    /// If it is not better, restores the items and problems and returns `None`.
     pub fn item_as_meant(&mut self, start: usize) -> Option<usize> {
         let (items, problems, read_to) = (self.items.len(), self.problems.len(), self.read_to);
         let slips = |this: &Self| this.context.signs.values().map(Vec::len).sum::<usize>();
@@ -357,7 +357,7 @@ impl<'w, 's> Recovery<'w, 's> {
 
     /// Returns whether the next token ends every unfinished construct before it. Such a token is a
     /// brace, `let`, the name of a field, the start of a block, or the first token of a line.
-    /// Within a block, the first token of a line must be a name.
+    /// Within a block, the first token of a line ends them only if it is a name.
     fn is_boundary(&mut self) -> bool {
         let word = self.word(0);
         matches!(word, "" | "let" | "{" | "}")
