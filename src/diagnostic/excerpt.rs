@@ -32,8 +32,8 @@ struct ExcerptLine {
     start: usize,
     /// End of the line in the excerpt, in bytes, without the line feed.
     end: usize,
-    /// Maps places of the source to places of the excerpt: for each shown character, and for the
-    /// end of each shown part of the line, its byte offset in the source and in the excerpt.
+    /// Pairs of byte offsets that map places of the source to places of the excerpt. There is a
+    /// pair for each shown character, and one for the end of each shown part of the line.
     shown: Vec<(usize, usize)>,
 }
 

@@ -191,7 +191,7 @@ impl<P: film::Pixel> Renderer<'_, P> {
         let vectors = match trace {
             Trace::Batched(..) if some.end - some.start >= WIDE_SAMPLES => SimdWidth::Widest,
             // Wide vectors take longer for few samples, and they would slow down the tracing of
-            // single samples afterwards.
+            // single samples afterwards, so the vectors of the baseline are used.
             _ => SimdWidth::Baseline,
         };
         self.sampling.place(vectors, [x, y], samples, some, points);

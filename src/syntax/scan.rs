@@ -197,8 +197,8 @@ impl Scan {
                 found.fixes.insert(0, away);
             }
             if self.odd_spaces.len() == MOST_PROBLEMS {
-                // At most `MOST_PROBLEMS` places are recorded. A fix of only these places would be
-                // incomplete.
+                // If the maximum number of places is recorded, there may be more of them. A fix of
+                // only the recorded places would be incomplete.
                 found.fixes.clear();
             }
             problems.push(found);

@@ -5,7 +5,7 @@
 //! the quadratic formula, signed areas, and slabs with divisions. A sum is treated as zero if it is
 //! at most 2^(−5/14·b) times as large as its terms, where b is the number of bits: 2^−182 for 512
 //! bits, 2^−500 for 1400. This limit is far above the rounding errors. It is far below 2^−90, the
-//! relative difference of depths that are equal by the rules of the language.
+//! relative difference up to which the language treats depths as equal.
 
 mod number;
 

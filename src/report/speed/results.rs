@@ -146,8 +146,9 @@ pub const LEAST_SPAN: f64 = 4.0;
 /// pixels empty, as `scatter` does, or where a grid is aligned with an edge.
 pub const LEAST_BEND: f64 = 0.1;
 
-/// Returns the slope at the end of a line through `points` in logarithms, fitted to the last three.
-/// A point is a number of samples and an error. Returns `None` as [`MethodSeries::slope`] does.
+/// Returns the slope at the end of the line through `points` on logarithmic axes, fitted to the
+/// last three points. A point is a number of samples and an error. Returns `None` if there are
+/// fewer than two points, if they span less than [`LEAST_SPAN`], or if an error is 0.
 pub fn end_slope(points: &[(f64, f64)]) -> Option<f64> {
     let points = end(points);
     let (first, last) = (points.first()?.0, points.last()?.0);

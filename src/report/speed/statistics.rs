@@ -1,7 +1,7 @@
 //! Statistics: median, root mean square, slope of a fitted line, and standard error of a mean.
 
-/// Returns the median of `values`, in any order. For an even number of values, it is the mean of
-/// the middle two. If there are no values, it is NaN.
+/// Returns the median of `values`, which need not be sorted. For an even number of values, it is
+/// the mean of the middle two. If there are no values, it is NaN.
 pub fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
