@@ -159,7 +159,8 @@ pub fn marked(
                 (("red", "a cell"), DVec2::ZERO, DVec2::new(width, height))
             }
         };
-        // Of several grids with cells, the first has the most nearly square ones.
+        // If several grids have cells, only a cell of the first grid is tinted. Its cells are the
+        // most nearly square ones.
         if marked.contains(&stratum) {
             continue;
         }
