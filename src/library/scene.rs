@@ -87,7 +87,8 @@ impl Scene {
     }
 
     /// Returns the scene with several more settings, as [`with_set`](Self::with_set) does. The text
-    /// is read only once, and values that are allowed only together may be set.
+    /// is read only once, after all settings are made, so values that are allowed only together can
+    /// be set.
     ///
     /// ```
     /// let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0)  far 20 }")?;
@@ -159,8 +160,8 @@ impl Scene {
     }
 
     /// Renders an area of the picture as [`render`](Self::render) does. `control` limits the
-    /// threads, reports the progress and can cancel the render. The pixels are those of the whole
-    /// picture.
+    /// threads, reports the progress and can cancel the render. Each pixel has the same colour as in
+    /// the whole picture.
     ///
     /// ```
     /// use std::{

@@ -219,8 +219,8 @@ mod tests {
         let late = Access::new().unwrap();
         let [printed, once] = late.tokens();
         assert_eq!(late.admit(&once, later(70)).err(), Some(NotAdmitted::Late));
-        // A token that was sent in time is used up. If it is sent again, both pages are refused,
-        // since the first page may not be the user's.
+        // A token that was sent in time cannot be used again. If it is sent a second time, both
+        // pages are refused, since the first page may not be the user's.
         let used = Access::new().unwrap();
         let [_, once] = used.tokens();
         let first = used.admit(&once, later(50)).unwrap();

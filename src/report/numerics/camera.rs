@@ -38,10 +38,11 @@ fn nearly_parallel(random: &mut CaseRng) -> Camera {
     let lowest = random.pick(&[-16.0, -200.0]);
     let view = random.unit() * random.power(-3.0, 3.0);
     let beside = random.unit() * random.power(lowest, -1.0);
-    // The up vector is nearly the view direction, because `beside` is small. A very small `beside`
-    // is even lost when it is added to `view`, so that both vectors are exactly parallel. In this
-    // case, and in half of the others, the camera looks nearly straight down instead: `beside`
-    // alone gives the x and z components of the view, and the up vector is the y axis.
+    // The up vector is nearly the view direction, because `beside` is usually much smaller. A very
+    // small `beside` is even lost when it is added to `view`, so that both vectors are exactly
+    // parallel. In this case, and in half of the others, the camera looks nearly straight down
+    // instead: `beside` alone gives the x and z components of the view, and the up vector is the
+    // y axis.
     let mut camera = along(DVec3::ZERO, view);
     camera.up = view + beside;
     if camera.up.cross(view) == DVec3::ZERO || random.below(2) == 0 {

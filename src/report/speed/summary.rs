@@ -99,8 +99,8 @@ pub fn verdict(measured: &Measurement, error: f64) -> String {
 }
 
 /// Returns the end of a sentence that recommends the methods that reach `error` with the fewest
-/// samples. Returns `None` if every method needs at least [`TOO_QUICK`], because their times can
-/// then be compared.
+/// samples. Extrapolated estimates are ignored. Returns `None` if all others are at least
+/// [`TOO_QUICK`], because the methods can then be compared by time.
 fn by_samples(measured: &Measurement, error: f64) -> Option<String> {
     let estimates = measured.series.iter().filter_map(|series| {
         let estimate = measured.estimate(series, error)?;
