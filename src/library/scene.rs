@@ -160,8 +160,8 @@ impl Scene {
     }
 
     /// Renders an area of the picture as [`render`](Self::render) does. `control` limits the
-    /// threads, reports the progress and can cancel the render. Each pixel has the same colour as in
-    /// the whole picture.
+    /// threads, reports the progress and can cancel the render. Each pixel has the same colour as
+    /// in the whole picture.
     ///
     /// ```
     /// use std::{

@@ -44,7 +44,7 @@ const LIFETIME: Duration = Duration::from_secs(5);
 /// machine have set many cookies. 32 KiB leave room for these.
 const LONGEST: usize = 32 << 10;
 
-/// State of a connection. The handler of a request has a copy, by which it lifts the limits of the
+/// State of a connection. It is shared with the handler of a request, which lifts the limits of the
 /// connection.
 #[derive(Clone, Debug, Default)]
 pub struct Visitor(Arc<VisitorState>);
@@ -131,7 +131,7 @@ pub struct Connection {
     /// Number of bytes that the connection may still send before it has sent a valid token.
     left: usize,
     /// Future that is ready when the connection must be closed, because its time is over or because
-    /// there are too many connections. It is `None` afterwards.
+    /// there are too many connections. A future that was ready is replaced by `None`.
     stay: Option<Pin<Box<dyn Future<Output = ()> + Send>>>,
 }
 

@@ -213,7 +213,8 @@ async fn admit(shared: &Arc<Shared>, visitor: &Visitor, mut socket: WebSocket) {
             let reason = "".into();
             let goodbye = Message::Close(Some(CloseFrame { code, reason }));
             let _ = socket.send(goodbye).await;
-            // Unread messages would reset the connection before the code arrives, so they are read.
+            // Unread messages would reset the connection before the close code arrives, so they are
+            // read.
             while let Some(Ok(_)) = socket.recv().await {}
         }
     }
