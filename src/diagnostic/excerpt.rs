@@ -38,7 +38,7 @@ struct ExcerptLine {
 }
 
 /// Maximum length, in bytes, of a line that is shown whole if the width of the terminal is unknown.
-/// Longer lines are cut, because a line may have megabytes. Most lines that people write are
+/// Longer lines are cut, because a line may be megabytes long. Most lines that people write are
 /// shorter.
 pub const LONG_LINE_BYTES: usize = 160;
 /// Minimum width of an excerpt, in columns. An excerpt is this wide even if the terminal is

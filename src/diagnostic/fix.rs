@@ -65,8 +65,8 @@ impl Fix {
     /// generic, so that it is compiled only once.
     fn sorted(title: String, mut edits: Vec<Edit>) -> Self {
         sort_by_span(&mut edits, |edit| edit.span);
-        // A removal includes the adjacent white space. Between two removals, only the first one
-        // includes it, so that their spans do not overlap.
+        // A removal includes the adjacent white space. White space between two removals is included
+        // only in the first removal, so that their spans do not overlap.
         for index in 1..edits.len() {
             let before = edits[index - 1].span;
             let span = &mut edits[index].span;

@@ -95,8 +95,9 @@ impl<'s> Report<'s> {
     }
 
     /// Returns the reports, separated by empty lines, and a summary of their number. Errors come
-    /// before warnings, since a warning may be a consequence of an error; within both, the order
-    /// is that of `diagnostics`. Returns an empty text if there are no diagnostics.
+    /// before warnings, since a warning may be a consequence of an error. The errors are in the
+    /// order of `diagnostics`, and so are the warnings. Returns an empty text if there are no
+    /// diagnostics.
     pub fn human(&self, diagnostics: &[Diagnostic]) -> String {
         if diagnostics.is_empty() {
             return String::new();

@@ -19,7 +19,7 @@ use crate::{color::Color, editor::viewport::clip, numbers};
 /// half a typographic point.
 pub const WIDTH: f64 = 680.0;
 
-/// Font size, in SVG units. If a page shows a figure 12 cm wide, as intended, letters have 9
+/// Font size, in SVG units. If a page shows a figure 12 cm wide, as intended, the font size is 9
 /// typographic points.
 const LETTERS: f64 = 18.0;
 
@@ -41,7 +41,7 @@ circle{fill:currentColor}.seen{stroke:currentColor;stroke-width:1.5}\
 .blue{color:#6cc0f5}.red{color:#f5a05a}.green{color:#3fcfa5}}";
 
 /// Height of the empty space that a cropped figure keeps above and below its marks, in SVG units.
-/// It is enough that the marks do not touch the text around the figure.
+/// It is large enough that the marks do not touch the text around the figure.
 const MARGIN: f64 = 12.0;
 
 /// Cost of a label that covers a line segment of a mark. A label is placed where the sum of its

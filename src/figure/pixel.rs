@@ -1,5 +1,5 @@
-//! Draws the figure `pixel`: one pixel with its sample points, the cells that each contain one of
-//! them, and the colours that they see.
+//! Draws the figure `pixel`: one pixel with its sample points, the cells of the sampling method,
+//! and the colours that the samples see.
 
 use glam::DVec2;
 
@@ -21,8 +21,8 @@ use crate::{
 /// of the figure.
 const CORNER: DVec2 = DVec2::new(16.0, 16.0);
 
-/// Side of the square that shows the pixel, in SVG units. It takes about half of the figure's
-/// width, 680; the rest is for the list of colours.
+/// Side of the square that shows the pixel, in SVG units. The square occupies about half of the
+/// figure's width, 680; the rest is for the list of colours.
 const SIDE: f64 = 360.0;
 
 /// Number of rows, and of columns, of points at which the pixel's colours are determined. Each

@@ -70,7 +70,7 @@ impl Scene {
     /// # Errors
     ///
     /// The data break a condition of the language: for example, a radius is 0, a number is NaN, or
-    /// an object's name has a space. The places of the mistakes are those in the generated text.
+    /// an object's name contains a space. The places of the mistakes refer to the generated text.
     pub fn from_data(data: &SceneData) -> Result<Self, Mistakes> {
         Self::parse(&formatted(data.text()?))
     }
@@ -247,8 +247,8 @@ impl Picture {
 }
 
 /// Writes the scene's text. If the scene has settings, the text is generated from its
-/// [data](Scene::data). It then has no comments and no `let`s, and repeated objects are written one
-/// by one.
+/// [data](Scene::data). Such a text contains no comments and no `let`s, and repeated objects are
+/// written one by one.
 impl fmt::Display for Scene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.sources.sets[..] {

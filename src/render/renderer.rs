@@ -132,8 +132,8 @@ impl<P: film::Pixel> Renderer<'_, P> {
             return self.go_on();
         }
         let trace = match trace {
-            // If there are few samples, preparing the pixel would take longer than tracing them one
-            // by one.
+            // If there are few samples, they are traced one by one, because preparing the pixel
+            // would take longer.
             Trace::Batched(candidates, _)
                 if samples <= SAMPLES_A_CANDIDATE * candidates.len() as u64 =>
             {

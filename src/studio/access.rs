@@ -125,8 +125,9 @@ pub enum NotAdmitted {
     Unknown = 4001,
     /// The token in the command line was sent after its lifetime.
     Late = 4002,
-    /// The token in the browser's command line was sent a second time. Then the page that sent it
-    /// first is not admitted any more either: one of the two may belong to another user.
+    /// The token in the browser's command line was sent a second time. In this case, the page that
+    /// sent it first is no longer admitted either, because one of the two pages may belong to
+    /// another user.
     Twice = 4003,
 }
 

@@ -29,9 +29,9 @@ use tokio::{
     time::timeout,
 };
 
-/// Maximum number of open connections that have not sent a valid token. For a further connection,
-/// the oldest is closed. A page opens at most four connections, so 64 suffice for many pages. With
-/// a higher number, other programs on the machine could make the host use more memory.
+/// Maximum number of open connections that have not sent a valid token. If there is one more, the
+/// oldest is closed. A page opens at most four connections, so 64 suffice for many pages. With a
+/// higher number, other programs on the machine could make the host use more memory.
 const MOST: usize = 64;
 
 /// Time after which a connection that has not sent a valid token is closed. On one machine, a

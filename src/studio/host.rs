@@ -142,7 +142,7 @@ fn routes(port: u16, shared: Arc<Shared>) -> MakeService {
         .into_make_service_with_connect_info::<Visitor>()
 }
 
-/// Refuses requests that are not meant for this host. Adds headers to each response that forbid
+/// Refuses requests that are not meant for this host. Each response gets headers that forbid
 /// caching, guessing of content types, and referrers.
 async fn guard(State(port): State<u16>, request: Request, next: Next) -> Response {
     let refusal = access::refusal(port, request.method(), request.uri(), request.headers());

@@ -102,8 +102,8 @@ impl Scan {
     }
 
     /// Records carriage returns that are not followed by a line feed. Carriage returns in comments
-    /// matter, too: other programs show a new line after one, but to the parser the comment
-    /// continues.
+    /// matter, too: other programs show a new line after a carriage return, but to the parser the
+    /// comment continues.
     fn find_carriage_returns(&mut self, text: &str, id: SourceId, start: usize) {
         let rest = text.get(start..).unwrap_or_default();
         let alone = rest.match_indices('\r').filter_map(|(at, _)| {
@@ -144,8 +144,8 @@ impl Scan {
     /// Adds the comments and the problems of the scan to the result of parsing.
     pub fn report(self, text: &str, parsed: &mut Parsed<'_>) {
         self.report_odd_spaces(text, &mut parsed.problems);
-        // In a comment, text after a carriage return may be meant as code. It is hidden, so nothing
-        // may be reported as missing.
+        // In a comment, text after a carriage return may be meant as code. The comment hides this
+        // code, so nothing is reported as missing.
         let hides = |place: &Span| text[place.start..].starts_with('\r');
         parsed.is_cut |= self.odd_spaces.iter().any(hides);
         if let Some(open) = self.open_comment(text) {
@@ -197,7 +197,7 @@ impl Scan {
                 found.fixes.insert(0, away);
             }
             if self.odd_spaces.len() == MOST_PROBLEMS {
-                // If the maximum number of places is recorded, there may be more of them. A fix of
+                // If the maximum number of places is recorded, the text may contain more. A fix of
                 // only the recorded places would be incomplete.
                 found.fixes.clear();
             }

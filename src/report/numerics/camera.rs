@@ -124,7 +124,8 @@ fn wide(random: &mut CaseRng) -> CaseScene {
         shapes.push(cuboid(corner, corner + size));
     }
     // The picture has 64 rows and 2^20 columns, and its window in space is 2 m high, so the window
-    // is 32768 m wide. At a distance of half its width, the horizontal field of view is 90°.
+    // is 32768 m wide. The distance is half the window's width, so the horizontal field of view is
+    // 90°.
     camera.lens = Lens::Distance(16384.0);
     let mut input = input(camera, &shapes);
     input.scene.image.width = 1 << 20;

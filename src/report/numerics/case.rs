@@ -10,7 +10,7 @@ use crate::{
     scene::{Camera, Scene, Shape},
 };
 
-/// A hard case of the arithmetic. [`cases`](super::cases) returns all of them.
+/// A hard case of the arithmetic. [`cases`](super::cases) returns all cases.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
     /// Short name of the case in tables, such as `C3a`.

@@ -11,7 +11,7 @@ use crate::{
     },
 };
 
-/// A point of a picture. For each axis, it has the pixel's column or row, and the offset from the
+/// A point of a picture. For each axis, contains the pixel's column or row, and the offset from the
 /// pixel's centre, in pixels.
 pub type SamplePoint = [(u32, f64); 2];
 
@@ -68,8 +68,8 @@ impl CaseRng {
         self.pick(&[-1.0, 1.0])
     }
 
-    /// Returns a uniformly random point of the box from `low` to `high`. If both have the same
-    /// coordinate on an axis, no random number is drawn for the axis.
+    /// Returns a uniformly random point of the box from `low` to `high`. If `low` and `high` have
+    /// the same coordinate on an axis, no random number is drawn for the axis.
     pub fn between(&mut self, low: [f64; 3], high: [f64; 3]) -> DVec3 {
         DVec3::from([0, 1, 2].map(|axis| {
             let (a, b) = (low[axis], high[axis]);
@@ -77,8 +77,8 @@ impl CaseRng {
         }))
     }
 
-    /// Returns a random point with integer coordinates in the box from `low` to `high`. If both
-    /// have the same coordinate on an axis, no random number is drawn for the axis.
+    /// Returns a random point with integer coordinates in the box from `low` to `high`. If `low`
+    /// and `high` have the same coordinate on an axis, no random number is drawn for the axis.
     pub fn wholes(&mut self, low: [i64; 3], high: [i64; 3]) -> DVec3 {
         DVec3::from([0, 1, 2].map(|axis| {
             let (a, b) = (low[axis], high[axis]);

@@ -113,7 +113,8 @@ struct Pictures {
     /// difference in the part that is shown, so that the differences are seen even if all are
     /// small.
     white: f64,
-    /// The exact picture, then one for each method. Empty if no method has a picture.
+    /// The exact picture, followed by a picture for each method. The list is empty if no method has
+    /// a picture.
     pictures: Vec<Value>,
 }
 

@@ -97,8 +97,8 @@ pub struct EndSlope {
     /// Standard error of `slope`, computed from the slopes of single runs; `None` if there are
     /// fewer than three runs.
     pub error: Option<f64>,
-    /// Whether the line bends, i.e. its last two segments have clearly different slopes. `slope` is
-    /// then a mean of both, and says little about more samples.
+    /// Whether the line bends, i.e. its last two segments have clearly different slopes. If so,
+    /// `slope` is a mean of these two slopes, and says little about more samples.
     pub bends: bool,
 }
 
@@ -166,7 +166,7 @@ pub fn bend(points: &[(f64, f64)]) -> Option<f64> {
     Some(statistics::slope(&[b, c])? - statistics::slope(&[a, b])?)
 }
 
-/// Times and error of a render, or typical ones of several renders.
+/// Times and error of a render, or typical values of several renders.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Run {
     /// CPU time in seconds: the sum over all threads of the process. NaN if the system does not

@@ -39,9 +39,9 @@ use crate::{
 const RUNGS: (usize, usize) = (4, 10);
 
 /// Usual and maximum number of runs of each render, if the user does not choose the number. The
-/// series of samples is continued only if there is time for the usual number. With three runs, the
-/// median ignores a run that other load on the machine delayed. With more than nine, the report
-/// would take longer for hardly better medians.
+/// series of samples is continued only if there is time for the usual number of runs. With three
+/// runs, the median ignores a run that other load on the machine delayed. With more than nine, the
+/// report would take longer for hardly better medians.
 const RUNS: (u64, u64) = (3, 9);
 
 /// Number of samples per pixel of the slowest method in the pictures by which the page compares

@@ -38,8 +38,8 @@ pub fn slope(points: &[(f64, f64)]) -> Option<f64> {
 }
 
 /// Returns the standard error of the mean of the n numbers in `values`. It is s/√n, where s is
-/// their standard deviation with the divisor n − 1. Returns `None` for fewer than three, which say
-/// too little about their spread.
+/// their standard deviation with the divisor n − 1. Returns `None` for fewer than three numbers,
+/// because they say too little about their spread.
 pub fn standard_error(values: &[f64]) -> Option<f64> {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;

@@ -15,8 +15,9 @@ pub struct SummaryTable {
     pub rows: Vec<Vec<String>>,
 }
 
-/// CPU time, in seconds, below which methods are not compared by time. Starting the threads and
-/// preparing the scene take some milliseconds, whatever the method, and vary by as much.
+/// CPU time, in seconds, below which methods are not compared by time. With every method, starting
+/// the threads and preparing the scene need some milliseconds. This time also varies by some
+/// milliseconds, so it would hide the differences between the methods.
 const TOO_QUICK: f64 = 0.01;
 
 /// Returns a line with the picture's size, the number of runs, the threads and the machine.
@@ -99,7 +100,7 @@ pub fn verdict(measured: &Measurement, error: f64) -> String {
 }
 
 /// Returns the end of a sentence that recommends the methods that reach `error` with the fewest
-/// samples. Extrapolated estimates are ignored. Returns `None` if all others are at least
+/// samples. Extrapolated estimates are ignored. Returns `None` if all other estimates are at least
 /// [`TOO_QUICK`], because the methods can then be compared by time.
 fn by_samples(measured: &Measurement, error: f64) -> Option<String> {
     let estimates = measured.series.iter().filter_map(|series| {

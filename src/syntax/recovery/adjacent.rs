@@ -152,8 +152,8 @@ impl<'s> Recovery<'_, 's> {
     /// stands between `start` and the `)`. Returns whether it was reported.
     pub(super) fn unopened_call(&mut self, start: usize) -> bool {
         let end = self.here().start;
-        // Maximum length, in bytes, of the text between `start` and the `)`. In a longer text,
-        // nothing is searched or reported. A value is searched again for each of its surplus `)`,
+        // Maximum length, in bytes, of the text between `start` and the `)`. A longer text is not
+        // searched, and nothing is reported. A value is searched again for each of its surplus `)`,
         // so the limit bounds the time. Usual values are much shorter.
         const LONGEST: usize = 1000;
         if end - start > LONGEST {

@@ -146,7 +146,7 @@ impl<'s> Recovery<'_, 's> {
         if self.words.is_kind(kind) {
             return self.block();
         }
-        // Skip the part before the `{`, which may have indices. The `{` itself may be missing.
+        // Skip the part before the `{`, which may contain indices. The `{` itself may be missing.
         self.skip_head();
         if self.is(0, "{") {
             self.bump();
@@ -316,8 +316,8 @@ impl<'s> Recovery<'_, 's> {
         let mut values = Vec::new();
         let (mut is_listed, mut end) = (false, start);
         while self.starts_value(0) && self.kind(0) != TokenKind::Word {
-            // A name after a comma is read as a further value. If the name has a value of its own,
-            // it is instead the name of the next field.
+            // A name after a comma is read as a further value. If a value follows the name, it is
+            // instead the name of the next field.
             let has_value = !matches!(self.kind(1), TokenKind::Name | TokenKind::Sign)
                 || matches!(self.word(1), "(" | "[" | "<" | "=" | ":" | ":=");
             if self.is_name(0) && (!is_listed || has_value) {

@@ -34,7 +34,7 @@ pub(super) enum CommentPosition {
 }
 
 /// Characters of mathematical notation and of other languages. A row holds several characters, the
-/// help if one of them stands in place of a value, and the help if one follows a value.
+/// help for a character in place of a value, and the help for a character after a value.
 #[rustfmt::skip]
 const NOTATION: &[(&str, [&str; 2])] = &[
     ("π", ["write `pi`", "write `* pi`"]),
@@ -50,8 +50,9 @@ const NOTATION: &[(&str, [&str; 2])] = &[
 /// % 2 == 0 ? red : blue`, which chooses between colours.
 pub(super) const TURNS: &str = "there is no remainder: of objects with indices, a pair of colours, `color (gray, white)`, takes turns, and `for i < 8, j < 2` counts in rows";
 
-/// Returns the help for a character of mathematical notation or of another language in `word`, such
-/// as `π`, or `None` if there is no such character. `is_behind` says that the word follows a value.
+/// Returns the help for `word` if it contains a character of mathematical notation or of another
+/// language, such as `π`. Otherwise, returns `None`. `is_behind` says that the word follows a
+/// value.
 pub(super) fn help_for_notation(word: &str, is_behind: bool) -> Option<&'static str> {
     let is_in = |row: &&(&str, _)| row.0.chars().any(|character| word.contains(character));
     let (_, [value, behind]) = NOTATION.iter().find(is_in)?;
@@ -287,8 +288,8 @@ impl<'s> Recovery<'_, 's> {
 
     /// Reports a file of another program as one mistake. Returns whether the text is such a file.
     pub(super) fn foreign_file(&mut self) -> bool {
-        // Number of bytes at the start of the file that are searched for the strings that identify
-        // files of another program. Such strings usually occur near the start. The limit bounds the
+        // Number of bytes that are searched, from the start of the file, for strings typical of
+        // other programs' files. Such strings usually occur near the start. The limit bounds the
         // time for a large file.
         const ENOUGH: usize = 1 << 14;
         let text = self.text.get(..self.source.floor_char_boundary(ENOUGH));

@@ -16,9 +16,9 @@ use crate::{
 /// Words that are surely not an object's name if they stand before a kind, as in `a sphere {`.
 const NO_NAMES: &str = "a an the my new add create draw make object";
 
-/// Maximum number of tokens of a line that are searched for the `{` that ends the head of a block.
-/// A `{` further on is not found. Heads are shorter than this; the limit bounds the time for a very
-/// long line.
+/// Maximum number of tokens of a line in which the `{` after the head of a block is searched. A `{`
+/// further on is not found. Heads are shorter than this; the limit bounds the time for a very long
+/// line.
 const LINE_TOKENS: usize = 24;
 
 impl<'s> Recovery<'_, 's> {

@@ -259,8 +259,8 @@ impl<'s> Recovery<'_, 's> {
         fits.then_some(list)
     }
 
-    /// Reports semicolons in place of commas. `is_plain` says that the list has no other mistakes;
-    /// only then is there a fix.
+    /// Reports semicolons in place of commas. `is_plain` says that the list has no other mistakes.
+    /// If it has some, there is no fix.
     fn semicolons(&mut self, signs: &[Span], is_plain: bool) {
         if let Some(&first) = signs.first() {
             let commas = signs.iter().map(|sign| Edit::new(*sign, ","));
@@ -311,8 +311,9 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::UNCLOSED_PARENTHESIS, open, &[], fix);
     }
 
-    /// Returns the values of `list` if `count` allows their number; otherwise `None`. Reports a
-    /// needless or missing comma, or a wrong number of values.
+    /// Reports a needless or missing comma, or a missing value beside a comma. Returns the values
+    /// of `list`, or `None` if a mistake was reported and the values are uncertain, for example
+    /// because their number is not in the range `count`.
     fn checked(&mut self, list: List<'s>, count: &PartCount) -> Option<Vec<Element<'s>>> {
         let elements = list.elements;
         let fits = count.contains(&elements.len());

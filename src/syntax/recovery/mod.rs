@@ -60,8 +60,8 @@ pub struct Recovery<'w, 's> {
     /// Whether a mistake hides the rest of the text.
     is_cut: bool,
     /// Whether error recovery read an item that follows the grammar but was probably meant
-    /// otherwise, and found no better explanation of it. The node that the generated parser made
-    /// was then kept.
+    /// otherwise, and found no better explanation of it. If so, the node that pest, the generated
+    /// parser, made was kept.
     is_doubtful: bool,
     /// Offset after the last item that error recovery read.
     pub(super) read_to: usize,
@@ -95,8 +95,8 @@ struct Context<'s> {
     /// Needless separators, such as `;`, and the characters that start comments in other languages,
     /// such as `#`. Each is mapped to its places.
     signs: BTreeMap<&'s str, Vec<Span>>,
-    /// Whether a separator in `signs` may be needed after all, for example to continue a list. The
-    /// reports of needless separators then get no fix.
+    /// Whether a separator in `signs` may be needed after all, for example to continue a list. If
+    /// so, the reports of needless separators get no fix.
     is_doubtful: bool,
 }
 
@@ -231,7 +231,8 @@ impl<'w, 's> Recovery<'w, 's> {
         self.peek(ahead).kind
     }
 
-    /// Returns the text of the token `ahead` tokens after the next one; empty at the end.
+    /// Returns the text of the token `ahead` tokens after the next one; empty at the end of the
+    /// text.
     fn word(&mut self, ahead: usize) -> &'s str {
         let token = self.peek(ahead);
         self.text.get(token.start..token.end).unwrap_or_default()
@@ -428,7 +429,7 @@ impl<'w, 's> Recovery<'w, 's> {
     }
 
     /// Removes the fixes of all problems from the index `first` on if these problems have different
-    /// codes. None of the fixes is then certain.
+    /// codes, because none of the fixes is certain in this case.
     fn clear_uncertain_fixes(&mut self, first: usize) {
         let problems = self.problems.get_mut(first..).unwrap_or_default();
         if problems.chunk_by(|a, b| a.code == b.code).count() > 1 {
@@ -452,7 +453,7 @@ fn unquoted(written: &str) -> &str {
 }
 
 /// Returns a help text with an example value of the type `takes`. If the type is unknown, the text
-/// has examples of several types.
+/// contains examples of several types.
 fn example(takes: Option<Type>) -> &'static str {
     let any = "write a value, such as `2`, `30deg`, `(0, 1, 0)` or `olive`";
     takes.map_or(any, Type::such_as)
