@@ -30,8 +30,8 @@ impl ComparisonBudget {
 }
 
 /// Returns the candidate that is most similar to `written`, or the first of several equally similar
-/// ones. A candidate counts as similar if it is equal except for case, or differs by at most about
-/// one typing error per three letters (optimal string alignment distance). Returns `None` if no
+/// ones. A candidate is similar if it is equal except for case, or differs by at most about one
+/// typing error per three letters (optimal string alignment distance). Returns `None` if no
 /// candidate is similar.
 pub fn nearest<'c>(
     written: &str,
@@ -40,8 +40,9 @@ pub fn nearest<'c>(
     nearest_of(written, &mut candidates.into_iter())
 }
 
-/// Returns the most similar name of a value or a function, as [`nearest`] does. A name of one or
-/// two letters may differ only in case, since it is seldom mistyped.
+/// Returns the name of a value or a function that is most similar to `written`, as [`nearest`]
+/// does. If `written` has at most two letters, returns only a name that is equal except for case,
+/// since so short a name is seldom mistyped.
 pub fn nearest_name<'c>(
     written: &str,
     candidates: impl IntoIterator<Item = &'c str>,

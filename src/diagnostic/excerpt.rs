@@ -32,13 +32,13 @@ struct ExcerptLine {
     start: usize,
     /// End of the line in the excerpt, in bytes, without the line feed.
     end: usize,
-    /// Maps places of the source to places of the excerpt: for each shown character, and for the
-    /// end of each shown part of the line, its byte offset in the source and in the excerpt.
+    /// Pairs of byte offsets that map places of the source to places of the excerpt. There is a
+    /// pair for each shown character, and one for the end of each shown part of the line.
     shown: Vec<(usize, usize)>,
 }
 
 /// Maximum length, in bytes, of a line that is shown whole if the width of the terminal is unknown.
-/// Longer lines are cut, because a line may have megabytes. Most lines that people write are
+/// Longer lines are cut, because a line may be megabytes long. Most lines that people write are
 /// shorter.
 pub const LONG_LINE_BYTES: usize = 160;
 /// Minimum width of an excerpt, in columns. An excerpt is this wide even if the terminal is

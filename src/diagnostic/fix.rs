@@ -39,7 +39,7 @@ impl Applicability {
 pub struct Fix {
     /// What the fix does, as an imperative such as "write `30deg`".
     pub title: String,
-    /// Who may apply the fix.
+    /// Certainty of the fix, which decides who may apply it.
     pub applicability: Applicability,
     /// The edits, sorted by place; their spans do not overlap.
     pub edits: Vec<Edit>,
@@ -65,8 +65,8 @@ impl Fix {
     /// generic, so that it is compiled only once.
     fn sorted(title: String, mut edits: Vec<Edit>) -> Self {
         sort_by_span(&mut edits, |edit| edit.span);
-        // A removal includes the adjacent white space. Between two removals, only the first one
-        // includes it, so that their spans do not overlap.
+        // A removal includes the adjacent white space. White space between two removals is included
+        // only in the first removal, so that their spans do not overlap.
         for index in 1..edits.len() {
             let before = edits[index - 1].span;
             let span = &mut edits[index].span;
@@ -297,9 +297,9 @@ impl Edit {
 /// Applies the edits of `fix` that belong to `source` to `text`, the text of this source, and
 /// returns the result.
 ///
-/// The edits' places are those in the text in which the problem was found. In the result, the
-/// places of other fixes are no longer right, so never apply a second fix to it: read the result
-/// again, or use [`Mistakes::fixed`](super::Mistakes::fixed), which applies the fixes of all
+/// The places of the edits refer to the text in which the problem was found. In the result, other
+/// fixes no longer have the right places. So never apply a second fix to the result: parse the
+/// result again, or use [`Mistakes::fixed`](super::Mistakes::fixed), which applies the fixes of all
 /// mistakes.
 ///
 /// ```

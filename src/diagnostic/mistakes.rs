@@ -9,9 +9,9 @@ use crate::source::Sources;
 
 /// Error that a text is not a valid scene: its mistakes and warnings, in the order of the text.
 ///
-/// They are displayed as the command line shows them, without colour; without the feature `fancy`,
-/// each as a line with its place, and a line of help. `Debug` prints the same text,
-/// so that a `main` function that returns this error ends with a readable report.
+/// `Display` prints them as the command line does, without colour. If the feature `fancy` is
+/// disabled, it prints each as a line with its place, and a line of help. `Debug` prints the same
+/// text, so that a `main` function that returns this error ends with a readable report.
 ///
 /// ```
 /// let text = "camera { eye (0, 2, 8)  lookt (0, 1, 0) }  checkerboard {}";

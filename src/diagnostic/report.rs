@@ -36,7 +36,7 @@ pub struct Style {
 pub enum Drawing {
     /// Box-drawing characters.
     Unicode,
-    /// ASCII characters, except for those of the scene itself.
+    /// ASCII characters only. Excerpts of the scene keep their own characters.
     Ascii,
     /// No drawing: every label is a sentence, for screen readers.
     Narrated,
@@ -81,8 +81,8 @@ fn counts(diagnostics: &[Diagnostic]) -> String {
 impl<'s> Report<'s> {
     /// Maximum number of diagnostics that are all shown as reports. If there are more, only the
     /// first [`Self::FIRST_SHOWN`] are shown, and the summary counts all by their codes. Reports of
-    /// several hundred mistakes would hide the first ones from the reader. JSON always has all
-    /// diagnostics.
+    /// several hundred mistakes would hide the first ones from the reader. The JSON output always
+    /// contains all diagnostics.
     pub const MOST_SHOWN: usize = 100;
     /// Number of diagnostics that are shown as reports if there are more than [`Self::MOST_SHOWN`].
     /// A user can correct these before checking the scene again; more would only lengthen the
@@ -95,8 +95,9 @@ impl<'s> Report<'s> {
     }
 
     /// Returns the reports, separated by empty lines, and a summary of their number. Errors come
-    /// before warnings, since a warning may be a consequence of an error; within both, the order
-    /// is that of `diagnostics`. Returns an empty text if there are no diagnostics.
+    /// before warnings, since a warning may be a consequence of an error. The errors are in the
+    /// order of `diagnostics`, and so are the warnings. Returns an empty text if there are no
+    /// diagnostics.
     pub fn human(&self, diagnostics: &[Diagnostic]) -> String {
         if diagnostics.is_empty() {
             return String::new();

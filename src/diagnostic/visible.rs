@@ -1,8 +1,8 @@
 //! Escapes text so that it is safe to print to a terminal.
 //!
-//! In: text from a scene, a file name, a picture or an argument. Out: the text, in which characters
-//! are escaped that could control a terminal, change the order of the printed text, or be
-//! invisible. These are the control characters and those that Unicode calls ignorable.
+//! In: text from a scene, a file name, a picture or an argument. Out: the text, with some
+//! characters escaped: those that could control a terminal, change the order of the printed text,
+//! or be invisible. These are the control characters and those that Unicode calls ignorable.
 
 use std::{borrow::Cow, fmt::Write};
 

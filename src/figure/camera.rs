@@ -30,8 +30,8 @@ const FARTHEST: f64 = 15.0;
 /// the ray meets and the first ones in the scene. With many more, the figure would be confusing.
 const MOST_OBJECTS: usize = 60;
 
-/// Maximum width and height, in SVG units, of a window that is too small to be recognised. The
-/// figure then says so.
+/// Width and height, in SVG units, below which a window is too small to be recognised. The figure
+/// of such a window says so in words.
 const TINY: f64 = 16.0;
 
 /// Approximate maximum number of lines on a checkerboard in each direction. If there are more

@@ -19,7 +19,7 @@ use crate::{color::Color, editor::viewport::clip, numbers};
 /// half a typographic point.
 pub const WIDTH: f64 = 680.0;
 
-/// Font size, in SVG units. If a page shows a figure 12 cm wide, as intended, letters have 9
+/// Font size, in SVG units. If a page shows a figure 12 cm wide, as intended, the font size is 9
 /// typographic points.
 const LETTERS: f64 = 18.0;
 
@@ -41,7 +41,7 @@ circle{fill:currentColor}.seen{stroke:currentColor;stroke-width:1.5}\
 .blue{color:#6cc0f5}.red{color:#f5a05a}.green{color:#3fcfa5}}";
 
 /// Height of the empty space that a cropped figure keeps above and below its marks, in SVG units.
-/// It is enough that the marks do not touch the text around the figure.
+/// It is large enough that the marks do not touch the text around the figure.
 const MARGIN: f64 = 12.0;
 
 /// Cost of a label that covers a line segment of a mark. A label is placed where the sum of its
@@ -71,8 +71,8 @@ pub struct Canvas {
 /// A text beside a point.
 struct Label {
     class: &'static str,
-    /// Points of which the label may name any one. Each has the preferred direction from the point
-    /// to the label.
+    /// Points, one of which the label names. Each point is given with the preferred direction from
+    /// the point to the label.
     points: Vec<[DVec2; 2]>,
     text: String,
 }
@@ -166,7 +166,7 @@ impl Canvas {
         self.label_any(class, &[at], from, text);
     }
 
-    /// Adds a label for that one of the points `points` at which it fits best.
+    /// Adds a label for one of the given points: the one at which the label fits best.
     pub fn label_any(
         &mut self,
         class: &'static str,
@@ -296,8 +296,9 @@ impl Canvas {
     }
 }
 
-/// Returns the places of a label of the size `size` near the point `at`: for each its middle, its
-/// direction from the point, and a cost, which is least near the point in the direction `away`.
+/// Returns the possible places of a label of the size `size` near the point `at`. A place consists
+/// of the label's middle, its direction from the point, and a cost. The cost is least near the
+/// point in the direction `away`.
 fn places(at: DVec2, away: DVec2, size: DVec2) -> impl Iterator<Item = (DVec2, DVec2, f64)> {
     let gaps = [9.0, 18.0, 30.0, 46.0, 66.0].into_iter().enumerate();
     gaps.flat_map(move |(far, gap)| {

@@ -128,8 +128,8 @@ pub fn strata(canvas: &mut Canvas, method: Method, n: u64, corner: DVec2, side: 
     canvas.line("ink", &[&frame[..], &frame[..1]].concat());
 }
 
-/// Tints one of the strata of each kind: a cell, a column and a row, whichever the method has.
-/// Returns the CSS class and the name of each.
+/// Tints one stratum of each kind that the method uses: a cell, a column or a row. Returns the CSS
+/// class and the name of each tinted stratum.
 pub fn marked(
     canvas: &mut Canvas,
     method: Method,
@@ -159,7 +159,8 @@ pub fn marked(
                 (("red", "a cell"), DVec2::ZERO, DVec2::new(width, height))
             }
         };
-        // Of several grids with cells, the first has the most nearly square ones.
+        // If several grids have cells, only a cell of the first grid is tinted. Its cells are the
+        // most nearly square ones.
         if marked.contains(&stratum) {
             continue;
         }

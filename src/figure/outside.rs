@@ -21,7 +21,7 @@ use crate::{
 
 /// Distance of the observer from the middle of the shown points, as a multiple of the radius of a
 /// sphere around them. From farther away, parallel lines look more parallel, and the view shows
-/// less depth. Chosen by eye.
+/// less depth. The value was chosen by eye.
 const DISTANCE: f64 = 6.0;
 
 /// Maximum absolute value of the coordinates that determine the view, in metres. Larger coordinates
@@ -125,8 +125,8 @@ impl Outside {
     }
 }
 
-/// Returns the drawings over the scene's picture, with the outlines of those objects of which
-/// something is seen.
+/// Returns the overlays of the scene's picture, with the outlines of the objects that are at least
+/// partly visible.
 pub fn visible_overlays(scene: &Scene) -> Overlays {
     let (seen, _) = seen(scene);
     let is_seen = |(index, seen)| matches!(seen, Visibility::Part(..)).then_some(index);

@@ -1,5 +1,5 @@
-//! Draws the figure `pixel`: one pixel with its sample points, the cells that each contain one of
-//! them, and the colours that they see.
+//! Draws the figure `pixel`: one pixel with its sample points, the cells of the sampling method,
+//! and the colours that the samples see.
 
 use glam::DVec2;
 
@@ -21,8 +21,8 @@ use crate::{
 /// of the figure.
 const CORNER: DVec2 = DVec2::new(16.0, 16.0);
 
-/// Side of the square that shows the pixel, in SVG units. It takes about half of the figure's
-/// width, 680; the rest is for the list of colours.
+/// Side of the square that shows the pixel, in SVG units. The square occupies about half of the
+/// figure's width, 680; the rest is for the list of colours.
 const SIDE: f64 = 360.0;
 
 /// Number of rows, and of columns, of points at which the pixel's colours are determined. Each
@@ -31,7 +31,8 @@ const SIDE: f64 = 360.0;
 const ROWS: u32 = 120;
 
 /// Maximum number of colours that are listed beside the pixel. If there are more, those with the
-/// largest areas are listed. The list has space for few, and most pixels show no more.
+/// largest areas are listed. The list has no space for many more, and most pixels show fewer
+/// colours.
 const COLORS: usize = 4;
 
 /// Draws the figure of `pixel` or, if it is `None`, of a pixel with several colours.
@@ -89,7 +90,8 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
         below,
         &format!("pixel ({x}, {y}), {method}, {count}"),
     );
-    // The names of the marked strata, in their colours, stand between the colours and their mean.
+    // Below the list of colours, the name of each tinted stratum is written in the stratum's own
+    // colour.
     let top = 116.0 + 32.0 * colors.len().min(COLORS) as f64;
     for (at, &(class, stratum)) in marked.iter().enumerate() {
         let place = DVec2::new(400.0 + 100.0 * at as f64, top - 22.0);
@@ -166,9 +168,9 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
     ))
 }
 
-/// Fills the square that shows the pixel (x, y) with the pixel's colours. Returns those with the
-/// largest areas, at most [`COLORS`]: for each, its index in the world's palette, and a point of
-/// the picture that shows it.
+/// Fills the square that shows the pixel (x, y) with the pixel's colours. Returns at most
+/// [`COLORS`] of them, those with the largest areas. Each is returned as its index in the world's
+/// palette, with a point of the picture that shows it.
 fn regions(canvas: &mut Canvas, world: &World, [x, y]: [u32; 2]) -> Vec<(usize, DVec2)> {
     let offset = |i: u32| (f64::from(i) + 0.5) / f64::from(ROWS) - 0.5;
     let step = SIDE / f64::from(ROWS);

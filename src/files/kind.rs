@@ -100,7 +100,7 @@ fn is_argument(path: &Path) -> bool {
             .any(|folder| path.parent() == Some(folder))
 }
 
-/// Opens for reading a file whose path is an argument on the command line. The path must lead to a
+/// Opens a file for reading. Its path is an argument on the command line, and must lead to a
 /// regular file, or stand for a descriptor that the shell has opened. Such a descriptor may also be
 /// a pipe or a device.
 pub fn open_argument(path: &Path) -> io::Result<File> {

@@ -41,7 +41,7 @@ impl Original {
         Ok(Self(Some((id(&found), read(path)?))))
     }
 
-    /// Returns a value that stands for a file that does not exist.
+    /// Returns the record of a file that does not exist.
     pub fn missing() -> Self {
         Self(None)
     }
@@ -52,7 +52,7 @@ impl Original {
     }
 
     /// Fails if the file at `path` has changed since it was read. Does nothing if no file existed
-    /// then.
+    /// when it was read.
     pub(super) fn check(&self, path: &Path) -> io::Result<()> {
         let Some((original, bytes)) = &self.0 else {
             // No file existed, so there is nothing to compare. If another program has created one

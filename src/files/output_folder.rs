@@ -38,9 +38,9 @@ const FILE_LIMIT: u64 = 256 << 20;
 #[derive(Debug)]
 pub struct OutputFolder {
     path: PathBuf,
-    /// SHA-256 hashes of the files that Pinhole wrote, by the file's path in the folder, with `/`
-    /// between names. A file has two hashes, of its old and its new content, while it is being
-    /// written.
+    /// SHA-256 hashes of the files that Pinhole wrote. The key is the file's path in the folder,
+    /// with `/` between the names. While a file is being written, there are two hashes, of its old
+    /// and of its new content.
     hashes: BTreeMap<String, Vec<String>>,
 }
 

@@ -146,7 +146,7 @@ pub fn check_writable(path: &Path, purpose: Purpose<'_>) -> io::Result<()> {
     is_writable.map_err(|error| writing_error(path, error))
 }
 
-/// Converts an error of writing to `path` to one in plain words.
+/// Replaces the message of an error that occurred while writing to `path` by plain words.
 fn writing_error(path: &Path, error: io::Error) -> io::Error {
     match error.kind() {
         kind @ io::ErrorKind::NotFound if !folder(path).exists() => {

@@ -51,9 +51,9 @@ pub fn align(entries: &mut [Entry<'_>]) {
     }
 }
 
-/// Keeps neighbouring blocks of one kind on one line each, if they were written like this and there
-/// are at least [`MIN_TABLE_ROWS`]. Some lines may then be slightly too wide, but such a table is
-/// readable at a glance.
+/// Keeps neighbouring blocks of one kind on one line each, if each was written on one line and
+/// there are at least [`MIN_TABLE_ROWS`]. Some lines may then be slightly too wide, but such a
+/// table is readable at a glance.
 fn keep_rows(entries: &mut [Entry<'_>]) {
     for rows in entries.chunk_by_mut(|a, b| !b.blank && is_row_beside(a, b)) {
         if rows.len() < MIN_TABLE_ROWS {
@@ -262,8 +262,8 @@ fn table(entries: &mut [Entry<'_>], rows: &[usize], field: usize) {
 }
 
 /// Describes the field of an object at the index `field`. Returns the object's kind, the field's
-/// name and the field's width in characters. Returns `None` if the object has no further field,
-/// because only the start of a further field would be aligned.
+/// name and the field's width in characters. The width determines where the next field starts, so
+/// returns `None` if there is no next field.
 fn cell<'a>(entry: &'a Entry<'_>, field: usize) -> Option<(&'a str, &'a str, usize)> {
     let block = block(entry)?;
     block.entries.get(field + 1)?;

@@ -16,7 +16,7 @@ pub struct Entry<'s> {
     /// Whether a blank line precedes the entry.
     pub blank: bool,
     /// The comments that stand before the entry on its line. If the entry is a line of comments,
-    /// all of its comments.
+    /// these are all of its comments.
     pub leading: Vec<&'s str>,
     /// The kind of the entry, with its parts.
     pub what: EntryKind<'s>,

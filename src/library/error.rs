@@ -45,7 +45,7 @@ pub enum Error {
     /// Two pictures have different sizes.
     #[error(transparent)]
     SizesDiffer(#[from] SizesDiffer),
-    /// The number of pixels is not that of the picture's places.
+    /// The number of pixels is not width · height, or is 0.
     #[error(transparent)]
     WrongPixelCount(#[from] WrongPixelCount),
     /// The bytes are not a picture that can be read.
@@ -83,7 +83,7 @@ pub enum Error {
     Write {
         /// Path of the file.
         path: PathBuf,
-        /// Reason why it cannot be written.
+        /// Reason why the file cannot be written.
         error: io::Error,
     },
 }

@@ -6,10 +6,11 @@ use crate::{
 };
 
 impl Mistakes {
-    /// Returns the scene's text after the first applicable fix of each mistake was applied, and
-    /// then those of the mistakes that this revealed. Fixes up to `most` are applied, except
-    /// placeholders. Mistakes without such a fix remain, and so do mistakes of settings.
-    /// [`scene::fix_all`] also returns which fixes were applied.
+    /// Applies the first applicable fix of each mistake, and returns the scene's text. If the new
+    /// text has further mistakes, their fixes are applied, too. A fix is applicable if its
+    /// [`Applicability`] is at most `most` and is not `Placeholder`. Mistakes without such a fix
+    /// remain, and so do mistakes of settings. [`scene::fix_all`] also returns which fixes were
+    /// applied.
     ///
     /// ```
     /// use pinhole::{Applicability, Scene};

@@ -86,7 +86,8 @@ impl Picture {
     /// The number of bytes is not 3 · `width` · `height`, or is 0.
     pub fn from_rgb8(width: u32, height: u32, bytes: &[u8]) -> Result<Self, Error> {
         let (colors, rest) = bytes.as_chunks::<3>();
-        // Bytes that are too few for a pixel count as one more pixel, so that they are an error.
+        // If there are one or two bytes at the end, a further pixel is added, so that the number of
+        // pixels is wrong and an error is returned.
         let colors = colors.iter().copied().chain(rest.first().map(|_| [0; 3]));
         let light = colors.map(|color| Color::from_bytes(color).to_linear());
         let film = Film::from_pixels(width, height, light.collect())?;
@@ -103,8 +104,8 @@ impl Picture {
         self.film().height()
     }
 
-    /// Returns the pixels, row by row from the top. Each has the means of red, green and blue, in
-    /// linear light from 0 to 1.
+    /// Returns the pixels, row by row from the top. Each pixel consists of the means of red, green
+    /// and blue, in linear light from 0 to 1.
     pub fn pixels(&self) -> &[[f64; 3]] {
         self.film().pixels()
     }
@@ -171,7 +172,7 @@ impl fmt::Debug for Picture {
     }
 }
 
-/// Makes a picture of the film's pixels. What scene it shows is unknown.
+/// Makes a picture of the film's pixels. The picture's scene is unknown.
 impl From<Film> for Picture {
     fn from(film: Film) -> Self {
         Self::of(film::Picture::new(film, Rounding::Float), None)

@@ -13,13 +13,13 @@ use crate::{
 
 impl Picture {
     /// Writes the picture to a file, completely or not at all. The path's extension selects the
-    /// format: `.png` for 8-bit sRGB, with the scene's text in the file, or `.exr` for linear
-    /// light in floats. The program `pinhole` writes the same bytes.
+    /// format: `.png` for 8-bit sRGB, with the scene's text in the file, or `.exr` for linear light
+    /// in floats. The program `pinhole` writes the same bytes.
     ///
     /// A PNG does not contain the scene if its text and settings are together longer than
-    /// [`film::TEXT_LIMIT`], or if there are more than [`film::OVERRIDES_LIMIT`] settings. Then
-    /// [`Scene::from_data`](super::Scene::from_data) of the scene's data makes a scene without
-    /// settings.
+    /// [`film::TEXT_LIMIT`], or if there are more than [`film::OVERRIDES_LIMIT`] settings. To make
+    /// an equal scene without settings, pass the scene's data to
+    /// [`Scene::from_data`](super::Scene::from_data).
     ///
     /// ```
     /// # let folder = tempfile::tempdir().unwrap();
@@ -80,8 +80,8 @@ impl Picture {
         }
     }
 
-    /// Returns the scene's text and its settings (as of `--set`) in the form in which a PNG stores
-    /// them. Returns `None` if they are unknown.
+    /// Returns the scene's text and its settings (`--set` arguments) in the form in which a PNG
+    /// stores them. Returns `None` if they are unknown.
     fn recipe(&self) -> Option<film::Recipe> {
         let sources = self.sources()?;
         Some(film::Recipe {

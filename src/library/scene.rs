@@ -70,7 +70,7 @@ impl Scene {
     /// # Errors
     ///
     /// The data break a condition of the language: for example, a radius is 0, a number is NaN, or
-    /// an object's name has a space. The places of the mistakes are those in the generated text.
+    /// an object's name contains a space. The places of the mistakes refer to the generated text.
     pub fn from_data(data: &SceneData) -> Result<Self, Mistakes> {
         Self::parse(&formatted(data.text()?))
     }
@@ -87,7 +87,8 @@ impl Scene {
     }
 
     /// Returns the scene with several more settings, as [`with_set`](Self::with_set) does. The text
-    /// is read only once, and values that are allowed only together may be set.
+    /// is read only once, after all settings are made, so values that are allowed only together can
+    /// be set.
     ///
     /// ```
     /// let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0)  far 20 }")?;
@@ -159,8 +160,8 @@ impl Scene {
     }
 
     /// Renders an area of the picture as [`render`](Self::render) does. `control` limits the
-    /// threads, reports the progress and can cancel the render. The pixels are those of the whole
-    /// picture.
+    /// threads, reports the progress and can cancel the render. Each pixel has the same colour as
+    /// in the whole picture.
     ///
     /// ```
     /// use std::{
@@ -246,8 +247,8 @@ impl Picture {
 }
 
 /// Writes the scene's text. If the scene has settings, the text is generated from its
-/// [data](Scene::data). It then has no comments and no `let`s, and repeated objects are written one
-/// by one.
+/// [data](Scene::data). Such a text contains no comments and no `let`s, and repeated objects are
+/// written one by one.
 impl fmt::Display for Scene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.sources.sets[..] {

@@ -10,17 +10,17 @@ use crate::{
 
 /// Greatest number of pixels of a picture that are in memory at once. Greater pictures are rendered
 /// and written in bands of rows, so that the size of a poster is limited by the disk. The pixels of
-/// a band take 12 to 50 MB. With smaller bands, threads would wait more often for each other at a
+/// a band need 12 to 50 MB. With smaller bands, threads would wait more often for each other at a
 /// band's end.
 const BAND_PIXELS: u32 = 1 << 22;
 
-/// Number of pixels above which a picture must fit into memory, although it is rendered in bands.
-/// It is that of a poster with sides of 2^18 pixels, which takes hours to render. More pixels are
-/// probably a mistyped size.
+/// Number of pixels above which a picture is rejected unless it would fit into memory. Rendering in
+/// bands does not need that memory, but so large a size is probably mistyped. A poster with sides
+/// of 2^18 pixels, which takes hours to render, has exactly this number.
 const MISTYPED: u64 = 1 << 36;
 
 /// Renders a part of the picture as [`render_as_asked`] does, in bands of rows, from the top. Each
-/// band is rendered when it is requested, and comes with its area.
+/// band is rendered when it is requested, and is returned with its area.
 ///
 /// # Errors
 ///

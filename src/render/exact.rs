@@ -119,8 +119,8 @@ pub fn render_numbers<P: film::Pixel, const N: usize>(
                     bound => (bound as f32).next_up().min(1.0),
                 })
                 .collect();
-            // Most pixels have the same colour as the pixel before, so the last conversion is used
-            // again.
+            // Most pixels have the same colour as the pixel before, so the result of the last
+            // conversion is stored and used again.
             let (mut before, mut last) = ([0.0; 3], P::of([0.0; 3], &encoder));
             let means: Vec<P> = pixels
                 .iter()

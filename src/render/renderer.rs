@@ -132,8 +132,8 @@ impl<P: film::Pixel> Renderer<'_, P> {
             return self.go_on();
         }
         let trace = match trace {
-            // If there are few samples, preparing the pixel would take longer than tracing them one
-            // by one.
+            // If there are few samples, they are traced one by one, because preparing the pixel
+            // would take longer.
             Trace::Batched(candidates, _)
                 if samples <= SAMPLES_A_CANDIDATE * candidates.len() as u64 =>
             {
@@ -191,7 +191,7 @@ impl<P: film::Pixel> Renderer<'_, P> {
         let vectors = match trace {
             Trace::Batched(..) if some.end - some.start >= WIDE_SAMPLES => SimdWidth::Widest,
             // Wide vectors take longer for few samples, and they would slow down the tracing of
-            // single samples afterwards.
+            // single samples afterwards, so the vectors of the baseline are used.
             _ => SimdWidth::Baseline,
         };
         self.sampling.place(vectors, [x, y], samples, some, points);

@@ -125,8 +125,9 @@ pub enum NotAdmitted {
     Unknown = 4001,
     /// The token in the command line was sent after its lifetime.
     Late = 4002,
-    /// The token in the browser's command line was sent a second time. Then the page that sent it
-    /// first is not admitted any more either: one of the two may belong to another user.
+    /// The token in the browser's command line was sent a second time. In this case, the page that
+    /// sent it first is no longer admitted either, because one of the two pages may belong to
+    /// another user.
     Twice = 4003,
 }
 
@@ -219,8 +220,8 @@ mod tests {
         let late = Access::new().unwrap();
         let [printed, once] = late.tokens();
         assert_eq!(late.admit(&once, later(70)).err(), Some(NotAdmitted::Late));
-        // A token that was sent in time is used up. If it is sent again, both pages are refused,
-        // since the first page may not be the user's.
+        // A token that was sent in time cannot be used again. If it is sent a second time, both
+        // pages are refused, since the first page may not be the user's.
         let used = Access::new().unwrap();
         let [_, once] = used.tokens();
         let first = used.admit(&once, later(50)).unwrap();

@@ -29,9 +29,9 @@ use tokio::{
     time::timeout,
 };
 
-/// Maximum number of open connections that have not sent a valid token. For a further connection,
-/// the oldest is closed. A page opens at most four connections, so 64 suffice for many pages. With
-/// a higher number, other programs on the machine could make the host use more memory.
+/// Maximum number of open connections that have not sent a valid token. If there is one more, the
+/// oldest is closed. A page opens at most four connections, so 64 suffice for many pages. With a
+/// higher number, other programs on the machine could make the host use more memory.
 const MOST: usize = 64;
 
 /// Time after which a connection that has not sent a valid token is closed. On one machine, a
@@ -44,7 +44,7 @@ const LIFETIME: Duration = Duration::from_secs(5);
 /// machine have set many cookies. 32 KiB leave room for these.
 const LONGEST: usize = 32 << 10;
 
-/// State of a connection. The handler of a request has a copy, by which it lifts the limits of the
+/// State of a connection. It is shared with the handler of a request, which lifts the limits of the
 /// connection.
 #[derive(Clone, Debug, Default)]
 pub struct Visitor(Arc<VisitorState>);
@@ -131,7 +131,7 @@ pub struct Connection {
     /// Number of bytes that the connection may still send before it has sent a valid token.
     left: usize,
     /// Future that is ready when the connection must be closed, because its time is over or because
-    /// there are too many connections. It is `None` afterwards.
+    /// there are too many connections. A future that was ready is replaced by `None`.
     stay: Option<Pin<Box<dyn Future<Output = ()> + Send>>>,
 }
 

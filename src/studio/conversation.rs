@@ -41,9 +41,9 @@ use crate::{
 /// with the memory of a machine.
 pub const LONGEST: usize = 64 << 20;
 
-/// Maximum time to wait for a message of the page. Then the scene's file and the progress of a
-/// picture are checked again. A user does not notice a delay of 50 ms; a much shorter time would
-/// keep an idle processor busy.
+/// Maximum time to wait for a message of the page. After this time, the scene's file and the
+/// progress of a picture are checked again. A user does not notice a delay of 50 ms; a much shorter
+/// time would keep an idle processor busy.
 const WAIT: Duration = Duration::from_millis(50);
 
 /// Maximum time to wait until a page has received a message. After this time, the connection is
@@ -241,7 +241,8 @@ impl Conversation<'_> {
         self.notify("studio/file", params)
     }
 
-    /// Sends the progress of the download, at most once per time [`PROGRESS`].
+    /// Sends the progress of the download, unless the last message about it is more recent than
+    /// [`PROGRESS`].
     fn send_progress(&mut self) -> Result<(), Closing> {
         let now = Instant::now();
         match &mut self.download {

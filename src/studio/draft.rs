@@ -21,8 +21,8 @@ use crate::files;
 pub type Read = fn(&Path) -> io::Result<Vec<u8>>;
 
 /// Time since its last change after which the file with the drafts of a scene is removed: 30 days.
-/// A compromise: after a shorter time, drafts could be lost too early; after a longer one, many
-/// forgotten texts would be stored.
+/// After a shorter time, drafts could be lost too early. After a longer one, many forgotten texts
+/// would be stored.
 const LIFETIME: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 
 /// Maximum number of drafts that are stored for a scene. If there are more, the oldest are removed.

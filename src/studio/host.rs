@@ -142,7 +142,7 @@ fn routes(port: u16, shared: Arc<Shared>) -> MakeService {
         .into_make_service_with_connect_info::<Visitor>()
 }
 
-/// Refuses requests that are not meant for this host. Adds headers to each response that forbid
+/// Refuses requests that are not meant for this host. Each response gets headers that forbid
 /// caching, guessing of content types, and referrers.
 async fn guard(State(port): State<u16>, request: Request, next: Next) -> Response {
     let refusal = access::refusal(port, request.method(), request.uri(), request.headers());
@@ -213,7 +213,8 @@ async fn admit(shared: &Arc<Shared>, visitor: &Visitor, mut socket: WebSocket) {
             let reason = "".into();
             let goodbye = Message::Close(Some(CloseFrame { code, reason }));
             let _ = socket.send(goodbye).await;
-            // Unread messages would reset the connection before the code arrives, so they are read.
+            // Unread messages would reset the connection before the close code arrives, so they are
+            // read.
             while let Some(Ok(_)) = socket.recv().await {}
         }
     }

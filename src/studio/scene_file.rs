@@ -176,7 +176,7 @@ impl SceneFile {
     ///
     /// # Errors
     ///
-    /// Returns the reason if the text is not saved. No file has then changed.
+    /// Returns the reason if the text is not saved. In this case, no file is changed.
     pub fn save(
         &mut self,
         new: &str,

@@ -95,8 +95,8 @@ const LEFT_HANDED: &str = "; turn the sign of every z (`pinhole explain left_han
 /// The columns of a row are:
 ///
 /// - the name of the format;
-/// - the possible beginnings of the file, separated by spaces: its first characters without white
-///   space, at most five;
+/// - the possible beginnings of the file, separated by spaces: at most five characters each,
+///   compared with the file's first characters other than white space;
 /// - the strings to count in the file, separated by `|`;
 /// - the minimum total number of these strings;
 /// - the characters that must not occur in the file;

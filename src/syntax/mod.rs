@@ -60,8 +60,8 @@ pub struct Parsed<'s> {
     pub comments: Vec<Span>,
     /// The syntax problems.
     pub problems: Vec<Diagnostic>,
-    /// Whether a mistake, such as an unclosed comment, hides a part of the text. No missing block
-    /// or field is then reported, since the hidden part may contain it.
+    /// Whether a mistake, such as an unclosed comment, hides a part of the text. If so, no missing
+    /// block or field is reported, since the hidden part may contain it.
     pub is_cut: bool,
     /// Whether error recovery was tried on an item that follows the grammar, such as a block with
     /// an unknown field, and found no better reading of it. Error recovery depends on line ends, so

@@ -4,7 +4,7 @@
 //! reads every item that follows the grammar, a few kilobytes at a time. The functions here convert
 //! pest's pairs (matches of grammar rules) to nodes and are named after the rules. `recovery` reads
 //! an item that pest rejects. It also reads an item that pest accepts but that was probably meant
-//! otherwise, such as a block with a field that it does not have.
+//! otherwise, such as a block with an unknown field.
 //!
 //! A text without mistakes can be split after each `}` and before each `let`: in such a text, every
 //! `}` ends a block and every `let` starts a definition.
@@ -148,8 +148,8 @@ pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, V
     }
 }
 
-/// Runs `work` on a thread whose stack has a known size, so that the nesting limit holds in every
-/// build and on every thread. A panic of `work` is passed on.
+/// Runs `work` on a new thread with a stack of [`STACK_BYTES`], so that the maximum nesting does
+/// not overflow the stack in any build or on any thread. Passes on a panic of `work`.
 fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
     thread::scope(|scope| {
         let builder = thread::Builder::new().stack_size(STACK_BYTES);
@@ -157,8 +157,8 @@ fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
         match handle.map(|handle| handle.join()) {
             Ok(Ok(result)) => result,
             Ok(Err(panic)) => std::panic::resume_unwind(panic),
-            // If no thread can be started, `work` runs here: in an optimized build, the caller's
-            // stack suffices for the nesting limit.
+            // If no thread can be started, `work` runs on the caller's stack. In an optimized
+            // build, this stack suffices for the maximum nesting.
             Err(_) => work(),
         }
     })
@@ -169,7 +169,8 @@ pub struct TreeBuilder<'w, 's> {
     text: &'s str,
     id: SourceId,
     words: &'w Vocabulary<'s>,
-    /// Byte offset of the text that pest reads. pest returns positions relative to this offset.
+    /// Byte offset, in the whole text, of the piece that pest reads. pest returns positions
+    /// relative to the start of this piece.
     base: usize,
     /// Whether the last item follows the grammar but has an unknown field or function, so that
     /// error recovery should read it again.
@@ -190,8 +191,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
 
     /// Parses the items in `range` with pest, and adds their nodes to `recovery`. An item that was
     /// probably meant otherwise is read again by error recovery. If the two readings of an item end
-    /// at different offsets, reading stops after this item and `false` is returned, and otherwise
-    /// `true`. Also returns the end of the last item.
+    /// at different offsets, stops after this item. Returns the end of the last item that was read,
+    /// and `false` if the readings of this item differ in their end.
     pub fn items(&mut self, range: Range<usize>, recovery: &mut Recovery<'_, 's>) -> (usize, bool) {
         self.base = range.start;
         let slice = self.text.get(range.clone()).unwrap_or_default();
@@ -215,8 +216,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 return (end, true);
             }
             end = item.span().end;
-            // The item is read again if it may contain a comment of another language, which starts
-            // with `--`.
+            // An item is also read again if it contains `--`, because that may start a comment of
+            // another language. Long items are not searched for it.
             let written = self.written(item.span());
             if self.doubtful || (written.len() < CHUNK_BYTES && written.contains("--")) {
                 match recovery.item_as_meant(start) {
@@ -312,8 +313,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         {
             return self.operand(operand);
         }
-        // The closures for operands, signs and operators share `self`. Each closure borrows it only
-        // while it makes a node.
+        // The closures for operands, signs and operators all need `self`, so it is in a `RefCell`.
+        // Each closure borrows it only while it makes a node, so no two borrows overlap.
         let this = std::cell::RefCell::new(self);
         PRECEDENCE
             .map_primary(|pair| this.borrow_mut().operand(pair))

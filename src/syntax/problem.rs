@@ -99,7 +99,7 @@ pub fn further_places(more: usize) -> String {
 }
 
 /// Merges all reports of the same unknown operator, such as `−` for `-`, into the first of them.
-/// The fix of that report then has the edits for all places.
+/// Afterwards, the fix of that report contains the edits for all places.
 pub fn merge_sign_reports(problems: &mut Vec<Diagnostic>) {
     // Maps a message to the index of its first report in `kept` and the number of further reports.
     let mut firsts: BTreeMap<String, (usize, usize)> = BTreeMap::new();

@@ -28,9 +28,9 @@ const SPLIT_SPACING_BYTES: usize = 256;
 pub struct Scan {
     /// All comments, in the order of the text.
     comments: Vec<Span>,
-    /// Offsets where a value may nest deeper than [`NESTING_LIMIT`]. Parentheses and minuses are
-    /// counted here, and a minus is counted even if it subtracts, which does not nest. Error
-    /// recovery therefore reads the items at these offsets again and counts exactly.
+    /// Offsets where a value may nest deeper than [`NESTING_LIMIT`]. The scan counts parentheses
+    /// and all minuses, although a minus that subtracts does not nest. Error recovery therefore
+    /// reads the items at these offsets again and counts exactly.
     pub deep: Vec<usize>,
     /// Ascending offsets where a text without mistakes can be split: after a `}` or before a `let`.
     /// Neighbouring offsets are at least [`SPLIT_SPACING_BYTES`] apart.
@@ -102,8 +102,8 @@ impl Scan {
     }
 
     /// Records carriage returns that are not followed by a line feed. Carriage returns in comments
-    /// matter, too: other programs show a new line after one, but to the parser the comment
-    /// continues.
+    /// matter, too: other programs show a new line after a carriage return, but to the parser the
+    /// comment continues.
     fn find_carriage_returns(&mut self, text: &str, id: SourceId, start: usize) {
         let rest = text.get(start..).unwrap_or_default();
         let alone = rest.match_indices('\r').filter_map(|(at, _)| {
@@ -126,8 +126,9 @@ impl Scan {
         }
     }
 
-    /// Returns whether the text has no unclosed comment, no value that may nest too deep, and no
-    /// invisible character except the white space of the language.
+    /// Returns whether the text has no unclosed comment, no value that may nest too deep, no
+    /// carriage return without a line feed, and no invisible character except the white space of
+    /// the language.
     pub fn is_plain(&self, text: &str) -> bool {
         self.open_comment(text).is_none() && self.deep.is_empty() && self.odd_spaces.is_empty()
     }
@@ -143,8 +144,8 @@ impl Scan {
     /// Adds the comments and the problems of the scan to the result of parsing.
     pub fn report(self, text: &str, parsed: &mut Parsed<'_>) {
         self.report_odd_spaces(text, &mut parsed.problems);
-        // In a comment, text after a carriage return may be meant as code. It is hidden, so nothing
-        // may be reported as missing.
+        // In a comment, text after a carriage return may be meant as code. The comment hides this
+        // code, so nothing is reported as missing.
         let hides = |place: &Span| text[place.start..].starts_with('\r');
         parsed.is_cut |= self.odd_spaces.iter().any(hides);
         if let Some(open) = self.open_comment(text) {
@@ -196,8 +197,8 @@ impl Scan {
                 found.fixes.insert(0, away);
             }
             if self.odd_spaces.len() == MOST_PROBLEMS {
-                // At most `MOST_PROBLEMS` places are recorded. A fix of only these places would be
-                // incomplete.
+                // If the maximum number of places is recorded, the text may contain more. A fix of
+                // only the recorded places would be incomplete.
                 found.fixes.clear();
             }
             problems.push(found);

@@ -302,7 +302,7 @@ impl Unit {
         }
     }
 
-    /// Returns the angle of `number` in this unit.
+    /// Converts `number`, which is in this unit, to an angle.
     pub fn of(self, number: f64) -> Angle {
         match self {
             Self::Degrees => Angle::from_degrees(number),

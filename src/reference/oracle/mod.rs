@@ -5,7 +5,7 @@
 //! the quadratic formula, signed areas, and slabs with divisions. A sum is treated as zero if it is
 //! at most 2^(−5/14·b) times as large as its terms, where b is the number of bits: 2^−182 for 512
 //! bits, 2^−500 for 1400. This limit is far above the rounding errors. It is far below 2^−90, the
-//! relative difference of depths that are equal by the rules of the language.
+//! relative difference up to which the language treats depths as equal.
 
 mod number;
 
@@ -179,8 +179,8 @@ impl Oracle {
     /// Returns whether floor(`x`/`square`) is odd, for a coordinate `x` of a point on a
     /// checkerboard whose squares have the side `square`.
     fn is_odd(&self, x: &N, square: &N) -> bool {
-        // A small number is added, so that a quotient which rounding has made slightly smaller than
-        // an integer becomes this integer. For example, 1/3 + 2/3 must not become 0.
+        // Rounding may have made the quotient slightly smaller than an integer. A small number is
+        // added, so that its floor is this integer. For example, floor(1/3 + 2/3) must not be 0.
         let close = self.number.exact(1.0) >> (self.number.bits as isize * 3 / 14);
         let cell = (x / square + close).floor();
         (cell.to_int().value() & IBig::ONE) == IBig::ONE

@@ -7,8 +7,8 @@ use glam::DVec3;
 
 use crate::{math::Angle, scene::CenteredTriangle};
 
-/// A binary floating-point number with as many bits as the oracle, a tracer of very high precision,
-/// uses.
+/// A binary floating-point number with the precision of the oracle, a tracer that computes with 512
+/// to 3000 bits.
 pub type N = FBig<HalfEven, 2>;
 
 /// A vector in world coordinates, of high-precision numbers.
@@ -22,7 +22,7 @@ pub struct Number {
 }
 
 impl Number {
-    /// Converts a number of a scene, which must be finite, without an error.
+    /// Converts a number of a scene exactly. The number must be finite.
     pub fn exact(self, x: f64) -> N {
         debug_assert!(x.is_finite());
         let x = N::try_from(x).unwrap_or(N::ZERO);

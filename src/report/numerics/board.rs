@@ -93,8 +93,9 @@ fn displaced(random: &mut CaseRng) -> CaseScene {
     input(along(eye, down), &[board(0.0, 1.0)])
 }
 
-/// Returns a view straight down from a height of 64 squares. From pixel to pixel, the slope of the
-/// ray changes by 1/64, so the upper left corner of each pixel shows exactly a corner of a square.
+/// Returns a view straight down on a board from a height of 64 times a square's side. From pixel to
+/// pixel, the slope of the ray changes by 1/64, so the upper left corner of each pixel shows
+/// exactly a corner of a square.
 fn corners(random: &mut CaseRng) -> CaseScene {
     let (reach, size) = (1 << random.below(53), libm::exp2(random.whole(-60, 60)));
     let eye = random.wholes([-reach, 64, -reach], [reach, 64, reach]) * size;

@@ -38,10 +38,11 @@ fn nearly_parallel(random: &mut CaseRng) -> Camera {
     let lowest = random.pick(&[-16.0, -200.0]);
     let view = random.unit() * random.power(-3.0, 3.0);
     let beside = random.unit() * random.power(lowest, -1.0);
-    // The up vector is nearly the view direction, because `beside` is small. In half of the inputs,
-    // or if rounding makes the vectors exactly parallel, the camera looks nearly straight down
-    // instead, and the up vector is the y axis. Adding `beside` to `view` may round it away, but
-    // here its x and z components are used without a sum.
+    // The up vector is nearly the view direction, because `beside` is usually much smaller. A very
+    // small `beside` is even lost when it is added to `view`, so that both vectors are exactly
+    // parallel. In this case, and in half of the others, the camera looks nearly straight down
+    // instead: `beside` alone gives the x and z components of the view, and the up vector is the
+    // y axis.
     let mut camera = along(DVec3::ZERO, view);
     camera.up = view + beside;
     if camera.up.cross(view) == DVec3::ZERO || random.below(2) == 0 {
@@ -123,7 +124,8 @@ fn wide(random: &mut CaseRng) -> CaseScene {
         shapes.push(cuboid(corner, corner + size));
     }
     // The picture has 64 rows and 2^20 columns, and its window in space is 2 m high, so the window
-    // is 32768 m wide. At a distance of half its width, the horizontal field of view is 90°.
+    // is 32768 m wide. The distance is half the window's width, so the horizontal field of view is
+    // 90°.
     camera.lens = Lens::Distance(16384.0);
     let mut input = input(camera, &shapes);
     input.scene.image.width = 1 << 20;

@@ -11,7 +11,7 @@ use crate::{
     },
 };
 
-/// A point of a picture. For each axis, it has the pixel's column or row, and the offset from the
+/// A point of a picture. For each axis, contains the pixel's column or row, and the offset from the
 /// pixel's centre, in pixels.
 pub type SamplePoint = [(u32, f64); 2];
 
@@ -19,8 +19,9 @@ pub type SamplePoint = [(u32, f64); 2];
 /// the last `f64` before the middle, and the middle itself.
 pub const MIDDLE: [(u32, f64); 2] = [(SIZE / 2 - 1, 0.5_f64.next_down()), (SIZE / 2, -0.5)];
 
-/// A generator of pseudorandom numbers. They depend only on a case and on the index of a block of
-/// its inputs, so that threads do not affect them.
+/// A generator of pseudorandom numbers. One thread tests each block of inputs of a case. The
+/// numbers depend only on the case and on the block's index, so the number of threads does not
+/// affect them.
 #[derive(Clone, Debug)]
 pub struct CaseRng(CounterRng);
 
@@ -67,8 +68,8 @@ impl CaseRng {
         self.pick(&[-1.0, 1.0])
     }
 
-    /// Returns a uniformly random point of the box from `low` to `high`. If both have the same
-    /// coordinate on an axis, no random number is drawn for the axis.
+    /// Returns a uniformly random point of the box from `low` to `high`. If `low` and `high` have
+    /// the same coordinate on an axis, no random number is drawn for the axis.
     pub fn between(&mut self, low: [f64; 3], high: [f64; 3]) -> DVec3 {
         DVec3::from([0, 1, 2].map(|axis| {
             let (a, b) = (low[axis], high[axis]);
@@ -76,8 +77,8 @@ impl CaseRng {
         }))
     }
 
-    /// Returns a random point with integer coordinates in the box from `low` to `high`. If both
-    /// have the same coordinate on an axis, no random number is drawn for the axis.
+    /// Returns a random point with integer coordinates in the box from `low` to `high`. If `low`
+    /// and `high` have the same coordinate on an axis, no random number is drawn for the axis.
     pub fn wholes(&mut self, low: [i64; 3], high: [i64; 3]) -> DVec3 {
         DVec3::from([0, 1, 2].map(|axis| {
             let (a, b) = (low[axis], high[axis]);

@@ -54,8 +54,8 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
 }
 
 /// Number of inputs of a case that are tested in the same scene, one after the other by one thread.
-/// Preparing a scene is slow, so it serves many inputs. A larger number would mean fewer different
-/// scenes.
+/// Preparing a scene is slow, so a scene is used for many inputs. A larger number would mean fewer
+/// different scenes.
 const BLOCK: u64 = 100;
 
 /// Tests `inputs_per_case` inputs of every case. Reports the progress as a number of inputs. If the
@@ -74,9 +74,9 @@ pub fn run(inputs_per_case: u64, control: &Control) -> Result<NumericsTable, NoT
         let (block, at) = (index / count, (index % count) as usize);
         let inputs = BLOCK.min(inputs_per_case - block * BLOCK);
         let random = &mut CaseRng::new(cases[at].id, block);
-        // The errors of every 16th input are measured, as counted by the tally. Each block of
-        // inputs has a tally of its own, so that the same inputs are measured however the threads
-        // share the blocks.
+        // The tally counts the inputs, and the errors of every 16th input are measured. Each block
+        // of inputs has a tally of its own, so that the same inputs are measured however the
+        // threads share the blocks.
         let mut tally = CaseTally::default();
         cases[at].ask(random, inputs, &mut tally);
         tallies[at] = tallies[at].plus(tally);

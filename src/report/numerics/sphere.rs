@@ -32,9 +32,10 @@ fn silhouettes(random: &mut CaseRng) -> CaseScene {
     input(camera, &[shape])
 }
 
-/// Returns a view along −z from the origin, and a sphere that touches the plane x = 0. Rays in this
-/// plane, in the middle of the picture, at most touch the sphere, and a ray that only touches it
-/// misses it. Rays beside the plane, on the sphere's side, may hit it.
+/// Returns a view along −z from the origin, and a sphere that touches the plane x = 0. This plane
+/// is seen as the vertical middle line of the picture. A ray in the plane touches the sphere at
+/// most, and the language treats touching as a miss. Rays beside the plane, on the sphere's side,
+/// may hit.
 fn touches(random: &mut CaseRng) -> CaseScene {
     let camera = along(DVec3::ZERO, DVec3::NEG_Z);
     let row = random.pixel();

@@ -41,8 +41,8 @@ impl NumericsTable {
         self.inputs() == self.planned
     }
 
-    /// Converts the table to JSON. Null stands for an infinite error (for example, that a surface
-    /// was not found), and for numbers that were not measured.
+    /// Converts the table to JSON. Null stands for an infinite error (for example, if a surface was
+    /// not found), and for numbers that were not measured.
     #[doc(hidden)]
     pub fn to_json(&self) -> Value {
         let rows = self.rows.iter().map(|CaseResult { case, tally }| {
@@ -113,7 +113,7 @@ fn cells(CaseResult { case, tally }: &CaseResult) -> [String; 7] {
     [id, title, theirs, ours, their_error, our_error, bound]
 }
 
-/// Formats `count` as a percentage of `inputs`. If it is below 0.1 %, it is written with an
+/// Formats `count` as a percentage of `inputs`. A percentage below 0.1 % is written with an
 /// exponent.
 fn share(count: u64, inputs: u64) -> String {
     let percent = 100.0 * count as f64 / inputs as f64;

@@ -146,9 +146,9 @@ impl Trial {
         seen.map_or(background, |(object, is_odd)| color(object, is_odd))
     }
 
-    /// Measures the errors of the distance and of the point that are seen at `pixels`, and records
-    /// the larger one in `tally`. The errors are in units in the last place (ulp) of the distance,
-    /// or of the point's largest coordinate.
+    /// Measures the errors of the distance and of the coordinates of what is seen at `pixels`, and
+    /// records the larger one in `tally`. The errors are in units in the last place (ulp) of the
+    /// distance, or of the point's largest coordinate.
     fn measure(&self, pixels: DVec2, tally: &mut CaseTally) {
         let r = self.oracle.direction_through(pixels, DVec2::ZERO);
         let Some(seen) = self.oracle.seen(&r) else {
@@ -178,8 +178,8 @@ impl Trial {
         of_point.into_iter().fold(of_t, f64::max)
     }
 
-    /// Returns the error of `x` in units in the last place of the number `of`. It is infinite if
-    /// `x` is not finite.
+    /// Returns the difference between `x` and the exact value `truth`, in units in the last place
+    /// of the number `of`. The result is infinite if `x` is not finite.
     fn ulps(&self, x: f64, truth: &N, of: f64) -> f64 {
         if !x.is_finite() {
             return f64::INFINITY;

@@ -50,8 +50,8 @@ fn slivers(random: &mut CaseRng) -> CaseScene {
 }
 
 /// Lengths of the sides of a triangle whose vertices have integer coordinates in its plane: (−9,
-/// −4), (9, −4) and (0, 8), relative to its centroid. Since these are exact, two such triangles can
-/// share an edge without any rounding.
+/// −4), (9, −4) and (0, 8), relative to its centroid. Integers are represented exactly, so two such
+/// triangles can share an edge without any rounding.
 const LATTICE: DVec3 = dvec3(15.0, 15.0, 18.0);
 
 /// Data of the edges of a triangle with the sides [`LATTICE`]. Each edge is shared with a second

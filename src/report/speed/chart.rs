@@ -203,9 +203,10 @@ fn draw_exact(canvas: &Canvas, x: i32, columns: &Range<i32>, rows: &Range<i32>) 
     write(canvas, "exact", place)
 }
 
-/// Returns the ends of a line that shows a slope. It lies at the lower left of the chart, where no
-/// method's line runs. All slopes begin at one point, high enough for the steepest, −3/4, to end
-/// above the least value that the chart shows, which may be a requested error with its own line.
+/// Returns the ends of a line that shows a slope. The line lies at the lower left of the chart,
+/// where no method's line runs. All slopes begin at one point. It is so high that even the steepest
+/// slope, −3/4, ends above the least value of the chart, where the line of a requested error may
+/// be.
 fn guide(x: &Range<f64>, y: &Range<f64>, slope: f64) -> [(f64, f64); 2] {
     let at = |part: f64| x.start * libm::pow(x.end / x.start, part);
     let (from, to) = (at(0.18), at(0.5));

@@ -126,7 +126,8 @@ impl MethodSeries {
         let enough = steps.iter().rposition(|(_, run)| run.error > error);
         let enough = enough.map_or(0, |last| last + 1);
         let per_pixel = match steps.get(enough) {
-            // Fewer samples may suffice, but were not measured.
+            // Fewer samples may suffice, but were not measured, so the smallest measured number is
+            // returned.
             Some(_) if enough == 0 => first,
             Some(many) => self.between(&steps[enough - 1], many, error),
             None => {
@@ -161,9 +162,9 @@ impl MethodSeries {
     }
 }
 
-/// Returns the slope by which a line of errors is continued beyond its last point. It is the slope
-/// at the line's end. If the line bends there, its last segment is continued. Returns `None` if the
-/// numbers of samples are too close to each other.
+/// Returns the slope along which a line of errors is extrapolated beyond its last point. This is
+/// the slope at the line's end or, if the line bends there, that of its last segment. Returns
+/// `None` if the numbers of samples are too close to each other.
 fn slope_beyond(steps: &[Measured]) -> Option<f64> {
     let points = steps.iter().map(|(per_pixel, run)| (*per_pixel, run.error));
     let points: Vec<_> = points.collect();

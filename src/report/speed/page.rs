@@ -107,12 +107,14 @@ fn shown_methods(measured: &Measurement) -> Vec<(&'static str, &MethodPicture)> 
 /// Pictures that compare the methods. All show the same part of the scene's picture.
 #[derive(Default)]
 struct Pictures {
-    /// Description of the part.
+    /// Description of the part of the scene's picture that is shown.
     part: String,
-    /// Difference that the heat maps draw white, in steps of 8-bit sRGB. It is the largest one in
-    /// the part, so that the differences are seen even if all are small.
+    /// Difference that the heat maps draw white, in steps of 8-bit sRGB. It is the largest
+    /// difference in the part that is shown, so that the differences are seen even if all are
+    /// small.
     white: f64,
-    /// The exact picture, then one for each method. Empty if no method has a picture.
+    /// The exact picture, followed by a picture for each method. The list is empty if no method has
+    /// a picture.
     pictures: Vec<Value>,
 }
 

@@ -77,7 +77,7 @@ fn compared(measured: &Measurement, error: f64) -> Option<String> {
 }
 
 /// Compares the exact method with the fastest sampling method: says how many samples per pixel the
-/// sampling method takes in the CPU time of the exact method.
+/// sampling method computes in the CPU time that the exact method needs.
 fn in_exact_time(measured: &Measurement) -> Option<String> {
     let exact = measured.exact_estimate(1.0)?;
     let most = measured.series.iter().filter_map(|series| {

@@ -26,8 +26,8 @@ pub struct Request {
     /// Numbers of samples per pixel to measure. If empty, these are 1, 4, 16, …, as many as there
     /// is time for.
     pub samples: Vec<u64>,
-    /// Number of runs of each method with each number of samples. If `None`, as many as there is
-    /// time for.
+    /// Number of runs of each method with each number of samples. If `None`, there are as many runs
+    /// as there is time for.
     pub runs: Option<u64>,
     /// Errors, in linear light. For each error, the report estimates how many samples and how much
     /// time a method needs to reach it.
@@ -97,16 +97,16 @@ pub struct EndSlope {
     /// Standard error of `slope`, computed from the slopes of single runs; `None` if there are
     /// fewer than three runs.
     pub error: Option<f64>,
-    /// Whether the line bends, i.e. its last two segments have clearly different slopes. `slope` is
-    /// then a mean of both, and says little about more samples.
+    /// Whether the line bends, i.e. its last two segments have clearly different slopes. If so,
+    /// `slope` is a mean of these two slopes, and says little about more samples.
     pub bends: bool,
 }
 
 impl EndSlope {
-    /// Minimum value of −`slope` at which the report says that more samples help, where `slope` is
-    /// that of the logarithm of the error over the logarithm of the number of samples. A smaller
-    /// value may come from noise in the measurement. For independent samples, the value is 0.5, far
-    /// above the minimum.
+    /// Minimum value of −`slope` at which the report says that more samples help. `slope` is that
+    /// of the error against the number of samples on logarithmic axes. A smaller value may come
+    /// from noise in the measurement. For independent samples, the value is 0.5, far above the
+    /// minimum.
     const LEAST: f64 = 0.05;
 
     /// Returns the factor by which the error falls if there are four times as many samples,
@@ -135,9 +135,9 @@ pub fn end<T>(points: &[T]) -> &[T] {
     &points[points.len().saturating_sub(3)..]
 }
 
-/// Minimum ratio of the last to the first of the numbers of samples to which a slope is fitted.
-/// Over less, the noise of the errors and the grid that a number happens to have (17 samples make a
-/// single row) would change the slope more than the method does.
+/// Minimum ratio of the largest to the smallest number of samples to which a slope is fitted. Over
+/// a smaller range, noise in the errors could change the slope more than the method does. So could
+/// the grid into which a method divides a pixel: for 17 samples, for example, it is a single row.
 pub const LEAST_SPAN: f64 = 4.0;
 
 /// Minimum difference between the slopes of a line's last two segments at which the line is said
@@ -146,8 +146,9 @@ pub const LEAST_SPAN: f64 = 4.0;
 /// pixels empty, as `scatter` does, or where a grid is aligned with an edge.
 pub const LEAST_BEND: f64 = 0.1;
 
-/// Returns the slope at the end of a line through `points` in logarithms, fitted to the last three.
-/// A point is a number of samples and an error. Returns `None` as [`MethodSeries::slope`] does.
+/// Returns the slope at the end of the line through `points` on logarithmic axes, fitted to the
+/// last three points. A point is a number of samples and an error. Returns `None` if there are
+/// fewer than two points, if they span less than [`LEAST_SPAN`], or if an error is 0.
 pub fn end_slope(points: &[(f64, f64)]) -> Option<f64> {
     let points = end(points);
     let (first, last) = (points.first()?.0, points.last()?.0);
@@ -156,8 +157,8 @@ pub fn end_slope(points: &[(f64, f64)]) -> Option<f64> {
         .flatten()
 }
 
-/// Returns the difference between the slopes of the last two segments of a line through `points` in
-/// logarithms. Returns `None` if there are fewer than three points, or if an error is 0.
+/// Returns the difference between the slopes of the last two segments of the line through `points`
+/// on logarithmic axes. Returns `None` if there are fewer than three points, or if an error is 0.
 pub fn bend(points: &[(f64, f64)]) -> Option<f64> {
     let [.., a, b, c] = *points else {
         return None;
@@ -165,7 +166,7 @@ pub fn bend(points: &[(f64, f64)]) -> Option<f64> {
     Some(statistics::slope(&[b, c])? - statistics::slope(&[a, b])?)
 }
 
-/// Times and error of a render, or typical ones of several renders.
+/// Times and error of a render, or typical values of several renders.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Run {
     /// CPU time in seconds: the sum over all threads of the process. NaN if the system does not

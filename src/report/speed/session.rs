@@ -3,10 +3,10 @@
 //! The exact picture is rendered first, since all errors are differences from it. This render is
 //! not timed, because it also warms up the caches and the processor. Then the renders are timed in
 //! several rounds. In each round, every method renders once with every number of samples. If the
-//! user does not choose these numbers, they are 1, 4, 16 and 64, followed by higher powers of 4 as
-//! long as there is time for a few rounds with the next number and the error of some method is
-//! still above the smallest requested error. In later rounds, the renders are in shuffled order, so
-//! that other load on the machine affects all methods alike.
+//! user does not choose these numbers, they are 1, 4, 16 and 64. Higher powers of 4 follow as long
+//! as two conditions hold: there is time for a few rounds with the next number, and the error of
+//! some method is still above the smallest requested error. In later rounds, the renders are in
+//! shuffled order, so that other load on the machine affects all methods alike.
 //!
 //! A timed render starts with the scene in memory and ends with the picture in memory. It includes
 //! preparing the objects and the samples, and starting the threads. Reading the scene, comparing
@@ -39,9 +39,9 @@ use crate::{
 const RUNGS: (usize, usize) = (4, 10);
 
 /// Usual and maximum number of runs of each render, if the user does not choose the number. The
-/// series of samples is continued only if there is time for the usual number. With three runs, the
-/// median ignores a run that other load on the machine delayed. With more than nine, the report
-/// would take longer for hardly better medians.
+/// series of samples is continued only if there is time for the usual number of runs. With three
+/// runs, the median ignores a run that other load on the machine delayed. With more than nine, the
+/// report would take longer for hardly better medians.
 const RUNS: (u64, u64) = (3, 9);
 
 /// Number of samples per pixel of the slowest method in the pictures by which the page compares
@@ -308,10 +308,10 @@ fn rendered(
 /// areas, magnified, must fit beside each other on the page; a smaller area would show fewer edges.
 const PART: (u32, u32) = (48, 27);
 
-/// Minimum fraction of an area's pixels that show another object, or background, than the most
-/// frequent one. If the fraction is smaller, the area is treated as having no edge, and another
-/// area is preferred for comparing the methods. With a quarter, an edge runs through the middle of
-/// the area rather than through a corner.
+/// Minimum fraction of an area's pixels that do not show the area's most frequent object (or the
+/// background, if that is more frequent). If the fraction is smaller, the area is treated as having
+/// no edge, and another area is preferred for comparing the methods. With a quarter, an edge runs
+/// through the middle of the area rather than through a corner.
 const OTHER_OBJECT: f64 = 0.25;
 
 /// Returns the area in which the page compares the methods. Areas without background that show an

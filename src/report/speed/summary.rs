@@ -15,8 +15,9 @@ pub struct SummaryTable {
     pub rows: Vec<Vec<String>>,
 }
 
-/// CPU time, in seconds, below which methods are not compared by time. Starting the threads and
-/// preparing the scene take some milliseconds, whatever the method, and vary by as much.
+/// CPU time, in seconds, below which methods are not compared by time. With every method, starting
+/// the threads and preparing the scene need some milliseconds. This time also varies by some
+/// milliseconds, so it would hide the differences between the methods.
 const TOO_QUICK: f64 = 0.01;
 
 /// Returns a line with the picture's size, the number of runs, the threads and the machine.
@@ -40,9 +41,8 @@ pub fn verdicts(measured: &Measurement) -> Vec<String> {
     measured.errors.iter().map(verdict).collect()
 }
 
-/// Returns a sentence that recommends a method to reach the error `wanted`, with the reason and
-/// other methods for comparison. Methods are compared by CPU time or, if that is below 10 ms, by
-/// samples.
+/// Returns a sentence that recommends a method to reach `error`, with the reason and other methods
+/// for comparison. Methods are compared by CPU time or, if that is below 10 ms, by samples.
 pub fn verdict(measured: &Measurement, error: f64) -> String {
     let Ranking { fastest, others } = measured.ranking(error);
     let wanted = asked_error(error);
@@ -100,8 +100,8 @@ pub fn verdict(measured: &Measurement, error: f64) -> String {
 }
 
 /// Returns the end of a sentence that recommends the methods that reach `error` with the fewest
-/// samples. Returns `None` if no sampling method was measured to reach it in less than
-/// [`TOO_QUICK`], so that times can be compared.
+/// samples. Extrapolated estimates are ignored. Returns `None` if all other estimates are at least
+/// [`TOO_QUICK`], because the methods can then be compared by time.
 fn by_samples(measured: &Measurement, error: f64) -> Option<String> {
     let estimates = measured.series.iter().filter_map(|series| {
         let estimate = measured.estimate(series, error)?;
@@ -160,9 +160,9 @@ fn per_pixel(estimate: &Estimate) -> String {
     format!("{} {noun} per pixel", samples(estimate))
 }
 
-/// Returns the table of methods. For each method, it has the slope of the logarithm of the error
+/// Returns the table of methods. A method's row contains the slope of the logarithm of the error
 /// over the logarithm of the number of samples, and what this slope means. For each of `errors`, it
-/// has the samples, the CPU time and the elapsed time that the method needs.
+/// also contains the samples, the CPU time and the elapsed time that the method needs.
 pub fn table(measured: &Measurement, errors: &[f64]) -> SummaryTable {
     let mut heads = vec!["method".to_owned()];
     heads.extend(

@@ -71,8 +71,8 @@ impl<'s> Recovery<'_, 's> {
                 let fix = replace(span, whole.replace(' ', ""));
                 self.report(&say::BAD_NUMBER.safe_if(false), span, &[whole, label], fix);
             }
-            // If the field requires a vector, `2 ball` is a product without its operator: `ball` is
-            // a number or a vector, and both can be multiplied by 2.
+            // If the field requires a vector, `2 ball` is probably a product without its operator.
+            // This holds whether `ball` is a number or a vector.
             (Some(Type::Vector), 2) if commas == 0 && self.is_named_factor(&first, &second) => {
                 self.missing_between(&first, &second);
             }
@@ -152,8 +152,8 @@ impl<'s> Recovery<'_, 's> {
     /// stands between `start` and the `)`. Returns whether it was reported.
     pub(super) fn unopened_call(&mut self, start: usize) -> bool {
         let end = self.here().start;
-        // Maximum length, in bytes, of the text between `start` and the `)`. In a longer text,
-        // nothing is searched or reported. A value is searched again for each of its surplus `)`,
+        // Maximum length, in bytes, of the text between `start` and the `)`. A longer text is not
+        // searched, and nothing is reported. A value is searched again for each of its surplus `)`,
         // so the limit bounds the time. Usual values are much shorter.
         const LONGEST: usize = 1000;
         if end - start > LONGEST {
@@ -272,8 +272,8 @@ fn are_thousands(text: &str) -> bool {
         && text.bytes().all(|it| it.is_ascii_digit() || it == b' ')
 }
 
-/// Returns whether a surplus `)` after `value` can be removed: wherever its `(` was meant, the
-/// parentheses would not change the value.
+/// Returns whether a surplus `)` after `value` can be removed safely: wherever its `(` is inserted
+/// in `value`, the result stays the same.
 pub(super) fn is_same_in_parentheses(value: &Value<'_>) -> bool {
     match &value.kind {
         ValueKind::Chain { first, rest } => {

@@ -18,7 +18,7 @@ const OTHER_LETS: &str =
 
 /// Maximum number of preceding items that are searched for a definition of the same name; earlier
 /// definitions are not found. Without a limit, the time would grow with the square of the number of
-/// lines. With a much smaller one, fewer definitions would be found.
+/// lines. With a much smaller maximum, fewer definitions would be found.
 const ITEMS_BEFORE: usize = 64;
 
 impl<'s> Recovery<'_, 's> {

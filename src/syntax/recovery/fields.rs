@@ -87,8 +87,9 @@ impl<'s> Recovery<'_, 's> {
         is_one && !self.is_field_name(name)
     }
 
-    /// Returns whether the next token starts an item that shows that the `}` of `block` was
-    /// forgotten: the token is the first of its line and indented no more than the block.
+    /// Returns whether the `}` of `block` was probably forgotten before the next token. This is so
+    /// if the block's kind is known and the token starts an item, is the first of its line, and is
+    /// indented no more than the block.
     fn is_after_block(&mut self, block: &Block<'s>) -> bool {
         let start = self.here().start;
         (self.is(0, "let") || self.starts_block() || self.starts_item())
@@ -97,8 +98,8 @@ impl<'s> Recovery<'_, 's> {
             && self.indent(start) <= self.indent(block.span.start)
     }
 
-    /// Returns whether the next token stands where the block should be closed: it is the last of
-    /// its line, and an item or the end of the text follows.
+    /// Returns whether the next token stands where the block should be closed: it is the last token
+    /// of the text, or the last of its line, and an item follows on the next line.
     pub(super) fn is_end_of_block(&mut self) -> bool {
         let is_item = self.is(1, "let") || self.is_head(1);
         self.kind(1) == TokenKind::End || (self.is_on_new_line(1) && is_item)
@@ -145,7 +146,7 @@ impl<'s> Recovery<'_, 's> {
         if self.words.is_kind(kind) {
             return self.block();
         }
-        // Skip the part before the `{`, which may have indices. The `{` itself may be missing.
+        // Skip the part before the `{`, which may contain indices. The `{` itself may be missing.
         self.skip_head();
         if self.is(0, "{") {
             self.bump();
@@ -315,8 +316,8 @@ impl<'s> Recovery<'_, 's> {
         let mut values = Vec::new();
         let (mut is_listed, mut end) = (false, start);
         while self.starts_value(0) && self.kind(0) != TokenKind::Word {
-            // A name after a comma is read as a further value. If the name has a value of its own,
-            // it is instead the name of the next field.
+            // A name after a comma is read as a further value. If a value follows the name, it is
+            // instead the name of the next field.
             let has_value = !matches!(self.kind(1), TokenKind::Name | TokenKind::Sign)
                 || matches!(self.word(1), "(" | "[" | "<" | "=" | ":" | ":=");
             if self.is_name(0) && (!is_listed || has_value) {

@@ -34,7 +34,7 @@ pub(super) enum CommentPosition {
 }
 
 /// Characters of mathematical notation and of other languages. A row holds several characters, the
-/// help if one of them stands in place of a value, and the help if one follows a value.
+/// help for a character in place of a value, and the help for a character after a value.
 #[rustfmt::skip]
 const NOTATION: &[(&str, [&str; 2])] = &[
     ("π", ["write `pi`", "write `* pi`"]),
@@ -46,12 +46,13 @@ const NOTATION: &[(&str, [&str; 2])] = &[
     ("?", ["there are no conditions: `pinhole explain condition` says what to write instead"; 2]),
 ];
 
-/// Help about remainders, for the operator `%` and for a condition such as `i % 2 == 0 ? red :
-/// blue`, which chooses between colours.
+/// Help for the operator `%`. The part after the colon is also the help for a condition such as `i
+/// % 2 == 0 ? red : blue`, which chooses between colours.
 pub(super) const TURNS: &str = "there is no remainder: of objects with indices, a pair of colours, `color (gray, white)`, takes turns, and `for i < 8, j < 2` counts in rows";
 
-/// Returns the help for a character of mathematical notation or of another language in `word`, such
-/// as `π`, or `None` if there is no such character. `is_behind` says that the word follows a value.
+/// Returns the help for `word` if it contains a character of mathematical notation or of another
+/// language, such as `π`. Otherwise, returns `None`. `is_behind` says that the word follows a
+/// value.
 pub(super) fn help_for_notation(word: &str, is_behind: bool) -> Option<&'static str> {
     let is_in = |row: &&(&str, _)| row.0.chars().any(|character| word.contains(character));
     let (_, [value, behind]) = NOTATION.iter().find(is_in)?;
@@ -78,8 +79,8 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Reads and reports a name from a library, such as `Math.sin(a)`, `np.cos(a)` or
-    /// `std::f64::consts::PI`, if its last word is known. Returns `None` if `first` does not start
-    /// such a name.
+    /// `std::f64::consts::PI`. Its last word must be a function of the language or `pi`. Returns
+    /// `None` for any other text, or if the file defines `first`.
     pub(super) fn library_name(&mut self, first: Name<'s>) -> Option<Value<'s>> {
         let mut last = 0;
         loop {
@@ -188,7 +189,8 @@ impl<'s> Recovery<'_, 's> {
             let end = start + kept.len().max(1);
             let sign = if line.starts_with(['#', '%']) { 1 } else { 2 };
             let place = Span::new(self.id, start, start + sign);
-            // A comment with `//` would include the `}`, so there is no fix.
+            // The fix would write `//` for the sign. This comment would then include the `}`, so
+            // there is no fix.
             if kept.len() < line.len() {
                 let words = [self.written(place), ""];
                 self.report(&say::COMMENT_SIGN, place, &words, None);
@@ -259,8 +261,8 @@ impl<'s> Recovery<'_, 's> {
     /// comment, so `c */` is the rest. Returns `false` and skips nothing if the text is not such a
     /// rest.
     pub(super) fn nested_comment(&mut self) -> bool {
-        // Maximum number of tokens that are searched for the `*/` that was meant to end the
-        // comment. If it comes later, the text is not recognized as the rest of a comment. The
+        // Maximum number of tokens that are searched for a later `*/`, the intended end of the
+        // comment. If no `*/` is found, the text is not recognized as the rest of a comment. The
         // limit bounds the time of the search.
         const ENOUGH: usize = 64;
         let start = self.here().start;
@@ -286,8 +288,8 @@ impl<'s> Recovery<'_, 's> {
 
     /// Reports a file of another program as one mistake. Returns whether the text is such a file.
     pub(super) fn foreign_file(&mut self) -> bool {
-        // Number of bytes at the start of the file that are searched for the strings that identify
-        // files of another program. Such strings usually occur near the start. The limit bounds the
+        // Number of bytes that are searched, from the start of the file, for strings typical of
+        // other programs' files. Such strings usually occur near the start. The limit bounds the
         // time for a large file.
         const ENOUGH: usize = 1 << 14;
         let text = self.text.get(..self.source.floor_char_boundary(ENOUGH));

@@ -22,9 +22,10 @@ pub(super) struct HeadSlip {
 /// Row of a table of patterns for mistakes in `for i < 8`: pattern, message, correction, and help
 /// for the case that the correction is not certain.
 ///
-/// In the pattern, `I` and `W` are names, `O` is a name if another one follows it, `N` and `M` are
-/// values, `$` is the end of the text, `|` separates alternatives, and the mistake is between `«`
-/// and `»`. In the other texts, `{I}`, `{W}`, `{N}` and `{M}` stand for the matched texts.
+/// In a pattern, `I` and `W` stand for names, `N` and `M` for values, and `O` for an optional name
+/// before another name. `$` is the end of the text, `|` separates alternatives, and the mistake is
+/// between `«` and `»`. In the other texts, `{I}`, `{W}`, `{N}` and `{M}` stand for the matched
+/// texts.
 type HeadPattern = [&'static str; 4];
 
 // Messages and help texts that several patterns for mistakes in `for i < 8` share.

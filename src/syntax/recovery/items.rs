@@ -16,9 +16,9 @@ use crate::{
 /// Words that are surely not an object's name if they stand before a kind, as in `a sphere {`.
 const NO_NAMES: &str = "a an the my new add create draw make object";
 
-/// Maximum number of tokens of a line that are searched for the `{` that ends the head of a block.
-/// A `{` further on is not found. Heads are shorter than this; the limit bounds the time for a very
-/// long line.
+/// Maximum number of tokens of a line in which the `{` after the head of a block is searched. A `{`
+/// further on is not found. Heads are shorter than this; the limit bounds the time for a very long
+/// line.
 const LINE_TOKENS: usize = 24;
 
 impl<'s> Recovery<'_, 's> {
@@ -46,9 +46,9 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Searches the line, from its second token on, for a token for which `is_end` holds. Returns
-    /// the number of tokens before that token, or before the end of the line; at most
-    /// [`LINE_TOKENS`].
+    /// Counts the tokens of the line before the first one for which `is_end` holds. The line's
+    /// first token is not tested. If `is_end` holds for none, counts all tokens of the line. The
+    /// result is at most [`LINE_TOKENS`].
     pub(super) fn find_in_line(&mut self, is_end: fn(&str) -> bool) -> usize {
         let mut count = 1;
         while count < LINE_TOKENS && !self.is_on_new_line(count) && !is_end(self.word(count)) {
@@ -268,8 +268,8 @@ impl<'s> Recovery<'_, 's> {
         self.items.push(Item::Bad(start.to(self.behind())));
     }
 
-    /// Skips to the next item at the start of a line. If a block or a `}` comes first, skips this
-    /// and stops after it.
+    /// Skips to the next item at the start of a line. Stops earlier after a block or a `}`,
+    /// whichever comes first.
     fn skip_lines(&mut self) {
         while self.kind(0) != TokenKind::End {
             if self.is_on_new_line(0) {

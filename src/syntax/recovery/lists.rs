@@ -16,7 +16,7 @@ use crate::{
     },
 };
 
-/// Range of the number of values that a list may have.
+/// Permitted numbers of values in a list.
 type PartCount = RangeInclusive<usize>;
 
 /// A list as it was written.
@@ -249,7 +249,7 @@ impl<'s> Recovery<'_, 's> {
         let last = last.map(|element| &element.value);
         let last = last.filter(|value| value.kind != ValueKind::Bad);
         // If the last value is a sum or a product, the missing bracket may belong after any of its
-        // operands.
+        // operands, so the list is uncertain.
         let is_sure = last.is_none_or(|it| !matches!(it.kind, ValueKind::Chain { .. }));
         let fits = is_whole && is_sure && count.contains(&list.elements.len());
         let end = last.filter(|_| fits).map(|last| last.span.end);
@@ -259,8 +259,8 @@ impl<'s> Recovery<'_, 's> {
         fits.then_some(list)
     }
 
-    /// Reports semicolons in place of commas. `is_plain` says that the list has no other mistakes;
-    /// only then is there a fix.
+    /// Reports semicolons in place of commas. `is_plain` says that the list has no other mistakes.
+    /// If it has some, there is no fix.
     fn semicolons(&mut self, signs: &[Span], is_plain: bool) {
         if let Some(&first) = signs.first() {
             let commas = signs.iter().map(|sign| Edit::new(*sign, ","));
@@ -311,8 +311,9 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::UNCLOSED_PARENTHESIS, open, &[], fix);
     }
 
-    /// Returns the values of `list` if `count` allows their number; otherwise `None`. Reports a
-    /// needless or missing comma, or a wrong number of values.
+    /// Reports a needless or missing comma, or a missing value beside a comma. Returns the values
+    /// of `list`, or `None` if a mistake was reported and the values are uncertain, for example
+    /// because their number is not in the range `count`.
     fn checked(&mut self, list: List<'s>, count: &PartCount) -> Option<Vec<Element<'s>>> {
         let elements = list.elements;
         let fits = count.contains(&elements.len());

@@ -4,8 +4,8 @@
 //! each mistake. This is a recursive-descent parser over the lexer's tokens. It reads items in
 //! `items`, fields in `fields`, indices in `repetition`, values in `values`, `adjacent` and
 //! `lists`, names in `names`, numbers in `numbers`, needless separators in `signs`, and constructs
-//! of other languages in `foreign`. For an item without mistakes, its tree is the same as that of
-//! the generated parser pest. It follows three rules:
+//! of other languages in `foreign`. From an item without mistakes, this parser makes the same tree
+//! as pest, the generated parser. Three rules apply:
 //!
 //! - Where a token fits nowhere, reading continues at the next field, line, item or closing brace
 //!   (`resync`).
@@ -60,8 +60,8 @@ pub struct Recovery<'w, 's> {
     /// Whether a mistake hides the rest of the text.
     is_cut: bool,
     /// Whether error recovery read an item that follows the grammar but was probably meant
-    /// otherwise, and found no better explanation of it. The node that the generated parser made
-    /// was then kept.
+    /// otherwise, and found no better explanation of it. If so, the node that pest, the generated
+    /// parser, made was kept.
     is_doubtful: bool,
     /// Offset after the last item that error recovery read.
     pub(super) read_to: usize,
@@ -95,8 +95,8 @@ struct Context<'s> {
     /// Needless separators, such as `;`, and the characters that start comments in other languages,
     /// such as `#`. Each is mapped to its places.
     signs: BTreeMap<&'s str, Vec<Span>>,
-    /// Whether a separator in `signs` may be needed after all, for example to continue a list. The
-    /// reports of needless separators then get no fix.
+    /// Whether a separator in `signs` may be needed after all, for example to continue a list. If
+    /// so, the reports of needless separators get no fix.
     is_doubtful: bool,
 }
 
@@ -145,10 +145,10 @@ impl<'w, 's> Recovery<'w, 's> {
         self.read_to
     }
 
-    /// Reads an item again that starts at `start` and follows the grammar but may have been meant
-    /// otherwise. Returns the item's end if the new reading explains the text better: by fields
-    /// that the block has, or by a comment or a function of another language. Otherwise, restores
-    /// the items and problems and returns `None`.
+    /// Reads the item at `start` again, which follows the grammar but may have been meant
+    /// otherwise. Returns the item's end if the new reading is better: a block then has only known
+    /// fields, or the mistakes of a definition are only comments or functions of other languages.
+    /// If it is not better, restores the items and problems and returns `None`.
     pub fn item_as_meant(&mut self, start: usize) -> Option<usize> {
         let (items, problems, read_to) = (self.items.len(), self.problems.len(), self.read_to);
         let slips = |this: &Self| this.context.signs.values().map(Vec::len).sum::<usize>();
@@ -231,7 +231,8 @@ impl<'w, 's> Recovery<'w, 's> {
         self.peek(ahead).kind
     }
 
-    /// Returns the text of the token `ahead` tokens after the next one; empty at the end.
+    /// Returns the text of the token `ahead` tokens after the next one; empty at the end of the
+    /// text.
     fn word(&mut self, ahead: usize) -> &'s str {
         let token = self.peek(ahead);
         self.text.get(token.start..token.end).unwrap_or_default()
@@ -357,7 +358,7 @@ impl<'w, 's> Recovery<'w, 's> {
 
     /// Returns whether the next token ends every unfinished construct before it. Such a token is a
     /// brace, `let`, the name of a field, the start of a block, or the first token of a line.
-    /// Within a block, the first token of a line must be a name.
+    /// Within a block, the first token of a line ends them only if it is a name.
     fn is_boundary(&mut self) -> bool {
         let word = self.word(0);
         matches!(word, "" | "let" | "{" | "}")
@@ -428,7 +429,7 @@ impl<'w, 's> Recovery<'w, 's> {
     }
 
     /// Removes the fixes of all problems from the index `first` on if these problems have different
-    /// codes. None of the fixes is then certain.
+    /// codes, because none of the fixes is certain in this case.
     fn clear_uncertain_fixes(&mut self, first: usize) {
         let problems = self.problems.get_mut(first..).unwrap_or_default();
         if problems.chunk_by(|a, b| a.code == b.code).count() > 1 {
@@ -452,7 +453,7 @@ fn unquoted(written: &str) -> &str {
 }
 
 /// Returns a help text with an example value of the type `takes`. If the type is unknown, the text
-/// has examples of several types.
+/// contains examples of several types.
 fn example(takes: Option<Type>) -> &'static str {
     let any = "write a value, such as `2`, `30deg`, `(0, 1, 0)` or `olive`";
     takes.map_or(any, Type::such_as)

@@ -12,8 +12,9 @@ use crate::{
     },
 };
 
-/// Units that people write. A row holds the spellings, the factor that converts to a unit of the
-/// language, and that unit. Lengths have no unit, since the language measures them in metres.
+/// Units that people write. A row holds the spellings of a unit, the factor by which a number in it
+/// is multiplied, and the resulting unit of the language. That unit is empty for lengths, which the
+/// language measures in metres.
 const UNITS: &[(&str, f64, &str)] = &[
     ("° deg degs degree degrees", 1.0, "deg"),
     ("rad rads radian radians", 1.0, "rad"),
@@ -111,8 +112,7 @@ impl<'s> Recovery<'_, 's> {
         let text = scaled(number, factor).filter(|_| fits);
         let angle = |unit| ValueKind::Angle { number, unit };
         // If the number needs no conversion, its value is returned rather than a value marked as
-        // bad. Further mistakes with it, such as a value that is too large, are then reported as
-        // well.
+        // bad, so that further mistakes, such as a value that is too large, are reported as well.
         let meant = match (fits && factor == 1.0, right) {
             (false, _) => ValueKind::Bad,
             (true, "deg") => angle(Unit::Degrees),
@@ -153,8 +153,8 @@ impl<'s> Recovery<'_, 's> {
             let place = if unit.starts_with('.') { span } else { behind };
             ("not a part of a number", None, place)
         };
-        // A fix that is shorter than the written text leaves out something that was written, so it
-        // is not safe. The fix of `4x4`, for example, is the product 16.
+        // A fix that is shorter than the written text omits a part of it, so it is not safe. The
+        // fix of `4x4`, for example, is the product 16.
         let is_longer = |right: &String| right.len() >= written.len();
         let said = say::BAD_NUMBER.safe_if(right.as_ref().is_none_or(is_longer));
         let fix = right.map(|right| replace(span, right));

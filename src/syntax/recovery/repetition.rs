@@ -26,9 +26,9 @@ impl<'s> Recovery<'_, 's> {
                 || self.kind(next) == TokenKind::Number)
     }
 
-    /// Reads the indices of a block, such as `for i < 8, j < i`, if it has any. If any other text
-    /// stands before the `{`, all of it is reported as one mistake. Returns `false` if the block
-    /// ends here: its indices have a mistake, and neither a `{` nor a field follows.
+    /// Reads the indices of a block, such as `for i < 8, j < i`, if there are any. If they contain
+    /// a mistake, the whole text up to the `{` is reported as one mistake. Returns `false` if the
+    /// block ends here: its indices have a mistake, and neither a `{` nor a field follows.
     pub(super) fn indices(&mut self, block: &mut Block<'s>) -> bool {
         if !self.is_repetition(0) {
             return true;
@@ -71,8 +71,8 @@ impl<'s> Recovery<'_, 's> {
         is_right || self.is(0, "{") || self.starts_fields(kind)
     }
 
-    /// Returns whether the next token starts a field of a block of kind `kind`, with its value. The
-    /// block's `{` is then missing.
+    /// Returns whether the next token starts a field of a block of kind `kind`, with its value. If
+    /// so, the block's `{` is missing.
     pub(super) fn starts_fields(&mut self, kind: &str) -> bool {
         let is_field = self.is_name(0) && self.words.takes(kind, self.word(0)).is_some();
         is_field && self.starts_value(1) && !self.is(1, "<")

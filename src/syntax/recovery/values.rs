@@ -114,7 +114,8 @@ impl<'s> Recovery<'_, 's> {
 
     fn is_stray_closing(&mut self) -> bool {
         let word = self.word(0);
-        // A bracket in place of the block's `}` is reported when the block ends.
+        // A bracket in place of the block's `}` is reported when the block ends, so it is not
+        // reported here.
         let is_end = |this: &mut Self| this.context.is_block && this.is_end_of_block();
         matches!(word, ")" | "]") && word != self.context.close && !is_end(self)
     }
