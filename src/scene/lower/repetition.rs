@@ -362,11 +362,12 @@ impl<'s> Lowering<'s> {
         let with_index: Vec<Span> = with_index
             .filter(|it| self.depends(*it, repetition))
             .collect();
-        // A problem with the first combination of indices often occurs with all others too. Such a
-        // problem gets a label with the indices only if its value depends on one of them.
+        // A problem of the first combination of indices often occurs with all other combinations
+        // too. If such a problem is about a value that depends on no index, a label with the
+        // indices would mislead, so it gets none.
         let is_first = values.iter().all(|&value| value == 0);
-        // A fix must not replace a formula that depends on an index by the value for one
-        // combination.
+        // If an expression depends on an index, a fix must not replace it by the value that it has
+        // for one combination.
         let keeps = |edit: &Edit| {
             let mut indices = repetition.indices.iter();
             let written = self.sources.text(edit.span);
