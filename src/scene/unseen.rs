@@ -4,8 +4,8 @@
 //! In: a camera and the objects. Out: the reason why no object is in the picture, if bounding
 //! spheres show it; and whether a board's squares are too small for the precision of a sample's
 //! coordinates. An object is treated as visible if the answer is uncertain, or if another object
-//! hides it, so a warning is never false. Computations are in `f64`; each comparison leaves a
-//! margin of [`MARGIN`] times the lengths in it.
+//! hides it, so a warning is never false. Computations are in `f64`. Each comparison of lengths
+//! leaves a margin for rounding errors, which is [`MARGIN`] times the lengths.
 
 use glam::DVec3;
 
@@ -36,7 +36,8 @@ pub enum WhyUnseen {
     Behind,
     /// All objects are beside the window, or behind the camera.
     Outside,
-    /// No object is in the picture, but one would be without this field, `near` or `far`.
+    /// No object is in the picture, but one would be visible without the near or the far plane. The
+    /// text is the field's name, `near` or `far`.
     Clipped(&'static str),
 }
 
