@@ -100,9 +100,10 @@ impl Outside {
 /// get the same colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
     // If the camera looks straight down or up, its up vector may be parallel to the view direction,
-    // so the directions of the window's sides are unknown. They are then assumed to be x and z.
-    // With any other directions, the window's extents along x and z are at least its shorter side.
-    // Squares that are lost under this assumption are therefore lost in any case.
+    // so the directions of the window's sides are unknown. They are then assumed to be x and z, so
+    // the window's extents along x and z are its two sides. For any other directions, both extents
+    // are at least the shorter side, so squares that are lost under this assumption are lost in any
+    // case.
     let straight = || {
         let (from, to) = camera.view.ends(camera.eye);
         let along_y = (to - from).normalize().y.abs() > 1.0 - MARGIN;
