@@ -273,8 +273,8 @@ impl BoardBlock {
         let [width, height] = [width, height].map(f64::from);
         let local = |block: &LocalForm| {
             let [a, b, c] = block.factors;
-            // The error bound of the block's form is doubled: it covers the error of the factors
-            // and the error of the value at the pixel's centre.
+            // The error bound of the block's form is doubled. One half covers the errors of the
+            // factors, the other half the error of the value at the pixel's centre.
             LocalForm::new([a / width, b / height, a * x + b * y + c], 2.0 * block.rad)
         };
         let CheckerForms { across, below, odd } = &self.squares;
@@ -317,8 +317,8 @@ impl BoardBlock {
                     corner[axis] =
                         floor(self.squares.across[axis].at(x, y) / self.squares.below.at(x, y));
                     // The corner is uncertain, so its computed coordinate is at most `slack` from a
-                    // line between squares. Its true coordinate is at most `slack` from the
-                    // computed one.
+                    // line between squares. The true coordinate is at most `slack` from the
+                    // computed one, so it is at most twice `slack` from the line.
                     doubt[axis] = 2.0 * self.slack[axis];
                 }
             }

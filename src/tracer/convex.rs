@@ -185,8 +185,8 @@ impl<T: Real> Convex<T> {
             if !difference.is_zero() && difference.is_negative() == which.is_lt() {
                 extreme = other;
             }
-            // If an overflow has left NaN, the comparison fails, and the difference is treated as
-            // unclear.
+            // If an overflow has left NaN, the comparison is false, so the crossing is assigned to
+            // an edge.
             let is_clear = distance > rad * (2.0 * UP);
             if !is_clear {
                 // The crossing cannot be assigned to one plane: near an edge, the ray crosses two

@@ -21,7 +21,8 @@ const ROOT_MARGIN: f64 = 1.125;
 /// about 150 units long.
 pub(super) const LEVELS: u32 = 24;
 
-/// A rectangle of the view plane in units of the grid; both ends are included.
+/// A rectangle of the view plane in units of the grid. The units `low` and `high` belong to the
+/// rectangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Rectangle {
     pub(super) low: [u32; 2],

@@ -2,15 +2,16 @@
 //! bounds in the view plane.
 //!
 //! All rays share the eye, so that a ray is a point of the view plane and lies in exactly one cell
-//! of each level: its search does not branch. An object is listed in the cells that it overlaps on
-//! the level where cells are about as large as the object. There are at most four such cells, so
-//! that the lists have at most four entries per object, whatever the objects look like. Each list
-//! is sorted by the objects' maximum inverse depth ([`Nearness`]), the greatest first. A ray that
-//! has hit an object stops reading a list at the first entry behind this object.
+//! of each level. The search for a ray therefore does not branch. An object is listed in the cells
+//! that it overlaps on the level where cells are about as large as the object. There are at most
+//! four such cells, so that the lists have at most four entries per object, whatever the objects
+//! look like. Each list is sorted by the objects' maximum inverse depth ([`Nearness`]), the
+//! greatest first. A ray that has hit an object stops reading a list at the first entry behind this
+//! object.
 //!
 //! Cells have coordinates in whole numbers, and the conversion to them is monotone. The conversion
-//! may move a point out of its object's bounds by at most one unit; bounds are therefore widened by
-//! one unit.
+//! can move a point of an object out of the object's bounds by one unit, but not by more. Bounds
+//! are therefore widened by one unit.
 
 mod grid;
 mod point_query;
