@@ -54,9 +54,9 @@ impl Quadtree {
     }
 
     /// Returns the objects that rays through the rectangle `patch` of the view plane may hit, in
-    /// file order. `behind` is called with an object that fills the rectangle, and returns the
-    /// rounded inverse depth that the object reaches everywhere; objects entirely behind it are
-    /// left out. Returns `None` if certainly more than `most` objects are found.
+    /// file order. `behind` is called with an object that fills the rectangle. It returns a rounded
+    /// inverse depth that the object has at least in the whole rectangle; objects entirely behind
+    /// this depth are left out. Returns `None` if certainly more than `most` objects are found.
     pub fn within(
         &self,
         patch: &Patch,

@@ -9,7 +9,7 @@
 //! left out. The others are evaluated for all samples in plain arrays, which the compiler
 //! vectorizes. A form is divided by its error bound, so that its sign is certain where its value is
 //! above 1 or below −1. An uncertain sample is traced again on its own, exactly. This module
-//! therefore never changes what is seen; it only finds it faster.
+//! therefore saves time without changing what is seen.
 
 mod pixel;
 mod prepare;
