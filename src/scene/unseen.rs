@@ -214,12 +214,12 @@ impl Sight {
         ]
     }
 
-    /// Returns whether a whole sphere lies clearly on the outer side of a plane, i.e. whether all
-    /// of its points p satisfy
+    /// Returns whether a whole sphere lies on the outer side of a plane, i.e. whether all of its
+    /// points p satisfy
     ///
     ///   n·(p − e) < bound
     ///
-    /// by a margin. Here e is the eye and n the plane's normal, of length 1.
+    /// by a margin for rounding errors. Here e is the eye and n the plane's normal, of length 1.
     fn is_beyond(&self, (center, radius): (DVec3, f64), n: DVec3, bound: f64) -> bool {
         let size = center.length() + radius + self.eye.length() + bound.abs();
         // If a number is NaN, the comparison is `false`, so the sphere may be visible.

@@ -20,7 +20,7 @@ use crate::{
 /// Bounds of an object as seen from the eye.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
-    /// Ranges of X and Y, the components of a ray's direction to the right and down. A ray whose X
+    /// Ranges of X and Y, the rightward and downward components of a ray's direction. A ray whose X
     /// or Y is outside of its range misses the object.
     pub across: [Interval; 2],
     /// Upper bound of the inverse depths of the object's points.

@@ -169,8 +169,8 @@ pub struct PicturePoint {
 }
 
 impl<T: Real> Camera<T> {
-    /// Prepares the camera of a scene. Sample points may be at most `reach` pixels from the
-    /// picture's centre in x and y.
+    /// Prepares the camera of a scene. `reach` is the maximum distance of sample points from the
+    /// picture's centre in x and in y, in pixels.
     pub fn new(basis: &Basis, scene: &Scene, reach: DVec2) -> Self {
         let (eye, image) = (scene.camera.eye, scene.image);
         let widest = basis.pitch.times(&Big::from_f64(reach.max_element()));

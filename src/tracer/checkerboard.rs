@@ -188,7 +188,8 @@ struct EyeOffset {
 }
 
 impl EyeOffset {
-    /// Splits a coordinate of the eye by the side `square` of the squares, without rounding.
+    /// Splits a coordinate of the eye into whole squares with the side `square` and a remainder,
+    /// without rounding.
     fn new(coordinate: f64, square: f64) -> Self {
         // The remainder operation of `f64` is exact, even with an infinite divisor. Differences of
         // numbers within a factor of two of each other are exact, too (Sterbenz). The result

@@ -88,8 +88,8 @@ impl<T: Real> SubPixelFrame<T> {
     /// Places a sub-pixel in the view plane of a camera.
     pub fn new(camera: &Camera<T>, sub_pixel: SubPixel) -> Self {
         let r = sub_pixel.middle(camera);
-        // A coordinate of the direction has five roundings, and the side has fewer. An error bound
-        // of eight roundings therefore covers them.
+        // A coordinate of the direction is computed with five roundings, and the side with fewer.
+        // An error bound of eight roundings therefore covers both.
         let ball = |mid: T| Ball {
             rad: mid.magnitude() * (8.0 * T::UNIT) + T::TINY,
             mid,

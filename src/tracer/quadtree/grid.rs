@@ -50,8 +50,8 @@ pub struct Nearness(u32);
 pub struct CellGrid {
     least: f64,
     per_unit: f64,
-    /// First grid unit of the camera's window on each axis. No point outside of the window is
-    /// looked up in the quadtree.
+    /// First grid unit of the camera's window on each axis. Points at lower units are outside of
+    /// the window, so they are not looked up in the quadtree.
     low: [u32; 2],
     high: [u32; 2],
 }

@@ -213,8 +213,8 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
         }
         let is_worth_more = candidates.len() <= self.quartering.most(area);
         // If there are at most as many candidates as a cell of the quadtree lists, testing all
-        // candidates is no slower than tracing each sample on its own. Such a sample would also
-        // test the objects of a cell.
+        // candidates is no slower than tracing each sample on its own, because a sample that is
+        // traced on its own is tested against the objects of a cell.
         if !is_worth_more && candidates.len() > OBJECTS_A_CELL {
             return self.show(PicturePart::Crowded { area });
         }

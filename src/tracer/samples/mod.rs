@@ -50,7 +50,7 @@ pub fn prepare(
 }
 
 /// Calls `count` with the palette index of every colour that the samples of a pixel see, and with
-/// the number of samples that see it. It may be called several times for a colour. `x` and `y` are
+/// the number of samples that see it. For one colour, there can be several calls. `x` and `y` are
 /// the samples' offsets from the pixel's centre. The first `samples` entries are used; more entries
 /// pad the length to a multiple of eight.
 pub fn count(
