@@ -16,7 +16,7 @@ use rand::{Rng, RngExt};
 /// Maximum number of fair coins whose heads are drawn by counting random bits, 64 per random
 /// number. The heads of more coins are drawn by transformed rejection. With a much larger maximum,
 /// counting would be slow, because its time grows with the number of coins. With a much smaller
-/// one, Stirling's formula, which the rejection uses, would be inaccurate.
+/// maximum, transformed rejection would be inaccurate, because it uses Stirling's formula.
 const MAX_COUNTED: u64 = 512;
 
 /// Draws the number of successes in `n` trials, each with the success probability `part`/`whole`.

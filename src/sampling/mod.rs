@@ -65,7 +65,8 @@ pub struct Sampling {
     key: Key,
     total: u64,
     picture: Area,
-    /// Minimum number of samples in a pixel. Not used by the method `scatter`, whose number varies.
+    /// Minimum number of samples in a pixel. The method `scatter` does not use this number, because
+    /// it distributes the samples at random.
     count: u64,
     /// Number of pixels that have one sample more than the minimum number.
     extra: u64,
