@@ -17,7 +17,7 @@ use crate::{
 };
 use glam::DVec3;
 
-/// The output of `pinhole inspect`. Every number is the exact value, correctly rounded. Only
+/// The output of `pinhole inspect`. Every number is the exact value, correctly rounded, except that
 /// visible areas are estimates if [`is_exact`](Self::is_exact) is `false`.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]

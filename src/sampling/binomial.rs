@@ -148,7 +148,7 @@ mod tests {
                 let expected = libm::log((n - k) / (k + 1.0));
                 // A weight is at most n·ln 2/2 and is computed with a few roundings, so the first
                 // term of `limit` covers its error. The second term covers the next term of
-                // Stirling's series, 1/(1260·k⁵), whose change from k to k + 1 is even smaller.
+                // Stirling's series, 1/(1260·k⁵), which changes by less than 1e-13 from k to k + 1.
                 let limit = 4.0 * f64::EPSILON * n + 1e-13;
                 assert!(
                     (step - expected).abs() < limit,

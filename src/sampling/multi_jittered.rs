@@ -1,7 +1,8 @@
 //! `multi_jittered`: one point in each cell of a grid and, at the same time, one in each of n
 //! columns and n rows (Kensler 2013, "Correlated multi-jittered sampling"). `n_rooks` is the
-//! special case of a grid with one row: it only has one point in each of n columns and n rows
-//! (McKay, Beckman and Conover 1979, Latin hypercube; Shirley 1991 calls it n-rooks).
+//! special case of a grid with one row. Its points only have the property that one lies in each of
+//! n columns and n rows (McKay, Beckman and Conover 1979, Latin hypercube; Shirley 1991 calls it
+//! n-rooks).
 //!
 //! For n = a·b points, the grid has a columns and b rows, where b is the greatest divisor of n up
 //! to √n. The point of the cell in column i and row j lies in column i·b + σ(j) of the n columns,

@@ -1,6 +1,6 @@
 //! Finds an example value for a field of a block. The example does not contradict the other fields
-//! of the block. The example in the schema might: a corner of a box may be on the wrong side of the
-//! other corner, or a camera may look at its own eye.
+//! of the block. The schema's example might contradict another field: a corner of a box may be on
+//! the wrong side of the other corner, or a camera may look at its own eye.
 //!
 //! In: the field, and the values of the other fields. Out: a value in the language's notation.
 

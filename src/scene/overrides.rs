@@ -109,8 +109,8 @@ fn one(text: &str, id: SourceId) -> Result<(Option<Name<'_>>, Name<'_>, usize), 
     Ok((block, name, target.len() + 1))
 }
 
-/// Returns the name in `text`, a part of the argument that starts at the offset `start`. Returns
-/// `None` if the text is not a name.
+/// Returns the name in `text`, which is a part of the argument and starts at its offset `start`.
+/// Returns `None` if the text is not a name.
 fn name(text: &str, start: usize, id: SourceId) -> Option<Name<'_>> {
     let trimmed = text.trim();
     let start = start + text.len() - text.trim_start().len();

@@ -48,7 +48,7 @@ pub fn negate(value: Value) -> Option<Value> {
 }
 
 /// Returns the quotient of two angles. If both angles are in degrees, or both in radians, their
-/// numbers are divided without conversion, which avoids its rounding errors.
+/// numbers are divided without conversion, to avoid its rounding errors.
 fn ratio(a: Angle, b: Angle) -> f64 {
     if a.radians == 0.0 && b.radians == 0.0 {
         return a.degrees / b.degrees;

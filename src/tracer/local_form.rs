@@ -115,8 +115,8 @@ impl Form<f64> {
 }
 
 impl LocalForm {
-    /// Builds a form from its factors. `inherited` bounds the error of the form's values that the
-    /// errors of the factors cause. The rounding errors of the evaluation are added.
+    /// Builds a form from its factors. `inherited` is a bound on the error that the factors' errors
+    /// cause in the form's values. The rounding errors of the evaluation are added.
     #[inline]
     pub fn new(factors: [f64; 3], inherited: f64) -> Self {
         let [a, b, c] = factors.map(f64::abs);
@@ -158,8 +158,8 @@ impl LocalForm {
 }
 
 impl LocalQuadratic {
-    /// Builds a form from its factors. `inherited` bounds the error of the form's values that the
-    /// errors of the factors cause. The rounding errors of the evaluation are added.
+    /// Builds a form from its factors. `inherited` is a bound on the error that the factors' errors
+    /// cause in the form's values. The rounding errors of the evaluation are added.
     pub fn new(factors: [f64; 6], inherited: f64) -> Self {
         let sizes: f64 = factors.iter().map(|factor| factor.abs()).sum();
         let rad = (inherited + sizes * LOCAL_ROUNDING + UNDERFLOW_ERROR) * UP;

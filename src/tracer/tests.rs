@@ -172,8 +172,9 @@ fn the_quadtree_changes_nothing() {
 }
 
 /// Checks that `f64` alone decides every one of many random samples, because a higher precision
-/// takes a hundred times as long. In the second scene, two objects lie in one plane. Only in the
-/// rows at the horizon does `f64` leave samples undecided, about 1e-10 of them.
+/// takes a hundred times as long. In the second scene, two objects lie in one plane. `f64` leaves
+/// samples undecided only in the rows at the horizon, about 1e-10 of them, so none is expected
+/// here.
 #[test]
 fn f64_alone_decides_nearly_everything() {
     let figure = [

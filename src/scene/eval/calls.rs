@@ -342,9 +342,9 @@ impl<'s> Evaluator<'_, 's> {
             "asin" | "acos" => (
                 format!("`{name}` takes a number from -1 to 1"),
                 match known {
-                    // The argument is outside -1..1 by more than a rounding error, so it has no
-                    // inverse sine or cosine. The help for a quotient also asks whether its two
-                    // operands are in the right order.
+                    // The argument is not between −1 and 1, by more than a rounding error, so it
+                    // has no inverse sine or cosine. The help for a quotient also asks whether its
+                    // two operands are in the right order.
                     [Value::Number(x)] if x.abs() > 1.0 + 1e-9 && !written.contains('/') => {
                         "no angle has that".to_owned()
                     }

@@ -241,8 +241,8 @@ impl<'s> Evaluator<'_, 's> {
             Some(_) => None,
         });
         let near = near?;
-        // The nearest name to `lightred`, which is not a CSS colour, is `lightgrey`. The author
-        // probably did not mean that colour, so nothing is suggested.
+        // A name such as `lightred` is not a CSS colour. The author probably did not mean the
+        // nearest colour either, such as `lightgrey`, so nothing is suggested.
         let is_of_colors = css::color(near).is_some();
         if is_of_colors && near != name.replace('_', "") && is_of_tone(name) {
             return None;

@@ -33,8 +33,8 @@ pub struct Names<'s> {
     pub(super) parts: HashSet<&'s str>,
     /// Every definition of the file with the span of its name, including later ones.
     definitions: HashMap<&'s str, Span>,
-    /// Names of the file's objects. An object's name has no value, and the report of such a use
-    /// says so.
+    /// Names of the file's objects. If one of them is used as a value, the report says that an
+    /// object is no value.
     pub(super) objects: HashSet<&'s str>,
     /// Names of the indices of all blocks. An index is the counter of a `for`, such as `i` in
     /// `for i < 8`.

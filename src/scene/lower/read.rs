@@ -150,8 +150,8 @@ impl<'s> Lowering<'s> {
         // Syntax problems within the value of an unknown field are dropped.
         diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
         let mut of_names = Vec::from(self.names.problems.take());
-        // An undefined name's fix has an edit for each use of the name. The uses were not always
-        // found in the order of the text, so the edits are sorted.
+        // A fix for an undefined name contains an edit for each use of the name. The uses were not
+        // always found in the order of the text, so the edits are sorted.
         for fix in of_names.iter_mut().flat_map(|problem| &mut problem.fixes) {
             sort_by_span(&mut fix.edits, |edit| edit.span);
         }

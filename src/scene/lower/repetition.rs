@@ -222,7 +222,7 @@ impl<'s> Lowering<'s> {
     }
 
     /// Returns whether every count uses only earlier indices, as in `for i < 8, j < i`. Otherwise
-    /// reports the first count that uses its own or a later index.
+    /// reports the first count that uses its own index or a later one.
     fn are_counted_before(&mut self, repetition: &Repetition<'s>) -> bool {
         for (at, index) in repetition.indices.iter().enumerate() {
             let mut later = repetition.indices.iter().skip(at);
@@ -363,8 +363,8 @@ impl<'s> Lowering<'s> {
             .filter(|it| self.depends(*it, repetition))
             .collect();
         // A problem of the first combination of indices often occurs with all other combinations
-        // too. If such a problem is about a value that depends on no index, a label with the
-        // indices would mislead, so it gets none.
+        // too. If such a problem is about a value that depends on no index, it gets no label with
+        // the indices.
         let is_first = values.iter().all(|&value| value == 0);
         // If an expression depends on an index, a fix must not replace it by the value that it has
         // for one combination.

@@ -75,8 +75,8 @@ impl Cuboid {
         }
     }
 
-    /// Sets the center or the size of the box to `to` by changing the corners. `name` is the
-    /// field's name. Returns `false` and changes nothing if `name` is another field.
+    /// Sets the field `name` of the box, `center` or `size`, to the value `to` by changing the
+    /// corners. Returns `false` and changes nothing if `name` is another field.
     pub(in crate::scene) fn set_center_or_size(&mut self, name: &str, to: DVec3) -> bool {
         let (center, half) = if name == BOX.center.name {
             (to, (self.max - self.min) / 2.0)
