@@ -78,19 +78,19 @@ impl Area {
     }
 
     /// Returns the index of a pixel within the area, counted row by row. `x` and `y` are the
-    /// pixel's column and row in the picture.
+    /// pixel's column and row in the picture. The pixel must lie in the area; otherwise, the index
+    /// is wrong.
     ///
     /// # Panics
     ///
-    /// May panic if the pixel lies to the left of the area or above it. An index of any other pixel
-    /// outside of the area is wrong.
+    /// May panic if the pixel lies to the left of the area or above it.
     pub fn index(self, x: u32, y: u32) -> usize {
         (y - self.y) as usize * self.width as usize + (x - self.x) as usize
     }
 
     /// Divides the area into tiles, squares of side `side` in pixels, and returns them row by row.
-    /// The first tile lies in the area's top left corner; tiles at the right and bottom edges are
-    /// cut off.
+    /// The first tile lies in the area's top left corner. Tiles at the right and bottom edges are
+    /// clipped to the area.
     ///
     /// # Panics
     ///
@@ -195,7 +195,8 @@ impl fmt::Display for Area {
     }
 }
 
-/// Parses an area in the form `X,Y,W,H`, four whole numbers. Fails if W or H is 0.
+/// Parses an area in the form `X,Y,W,H`, four whole numbers. Fails if the text has another form, or
+/// if W or H is 0.
 impl FromStr for Area {
     type Err = String;
 

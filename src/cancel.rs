@@ -26,7 +26,7 @@ pub(crate) fn is_set(cancel: &AtomicBool) -> bool {
 ///
 /// # Errors
 ///
-/// The flag is set.
+/// Returns [`Cancelled`] if the flag is set.
 pub fn unless_set<T>(cancel: &AtomicBool, made: T) -> Result<T, Cancelled> {
     if is_set(cancel) {
         Err(Cancelled)

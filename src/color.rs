@@ -67,7 +67,7 @@ pub fn srgb_to_linear(encoded: f64) -> f64 {
 /// is the light whose sRGB value is `k` + 1/2 in 8-bit steps, rounded up to an `f64`.
 ///
 /// Whether an `f64` is below that light can be decided with integers. The curve of sRGB raises a
-/// rational number x to the power 2.4, and a positive L is less than x^2.4 exactly if L^5 is less
+/// rational number x to the power 2.4. A positive light L is less than x^2.4 exactly if L^5 is less
 /// than x^12.
 pub fn half_byte(k: u8) -> f64 {
     let mut light = srgb_to_linear((f64::from(k) + 0.5) / 255.0);
@@ -158,9 +158,9 @@ pub fn whole_parts(written: &str) -> String {
     bytes
 }
 
-/// Returns whether all channels in `parts`, texts of a colour in a scene, are numbers up to 1. The
-/// language's channels go from 0 to 255. If all are at most 1, the author may have meant the range
-/// 0–1.
+/// Returns whether all channels in `parts` are numbers up to 1. `parts` contains the texts of a
+/// colour's channels in a scene. The language's channels go from 0 to 255, so the author of such a
+/// colour may have meant the range 0–1.
 pub fn are_shares(parts: &[&str]) -> bool {
     let separates = |c: char| c == ',' || c.is_whitespace();
     let parts = parts.iter().flat_map(|part| part.split(separates));

@@ -91,7 +91,7 @@ pub fn other_names() -> impl Iterator<Item = (&'static str, &'static str)> {
     OTHER_NAMES.iter().flat_map(named)
 }
 
-/// The documents with headings that are explained.
+/// Documents whose sections are found by their headings.
 const DOCUMENTS: [&str; 3] = [LANGUAGE, SAMPLING, CAMERA];
 
 /// Returns the section of the language's reference, or of a glossary, that has the heading
@@ -102,8 +102,8 @@ pub fn section(heading: &str) -> Option<&'static str> {
         .find_map(|text| section_of(text, heading))
 }
 
-/// Returns the section of `text`, which is Markdown, with the heading `heading`, in any
-/// capitalization. Returns `None` if there is none.
+/// Returns the section of the Markdown text `text` whose heading is `heading`, in any
+/// capitalization. Returns `None` if there is no such section.
 pub fn section_of(text: &'static str, heading: &str) -> Option<&'static str> {
     let is_heading = |line: &str| line.starts_with("## ");
     let mut start = None;

@@ -17,7 +17,8 @@ use crate::{
 };
 use glam::DVec3;
 
-/// The output of `pinhole inspect`. Every number is the exact value, correctly rounded.
+/// The output of `pinhole inspect`. Every number is the exact value, correctly rounded, except that
+/// visible areas are estimates if [`is_exact`](Self::is_exact) is `false`.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Inspection {
@@ -100,8 +101,8 @@ impl ObjectFacts {
     }
 }
 
-/// Describes a scene. `source` is the text from which it was read; it is used to find the objects'
-/// lines.
+/// Describes a scene. `source` is the text of the scene, in which the lines of the objects are
+/// found.
 ///
 /// # Panics
 ///
@@ -217,7 +218,7 @@ fn rounded(x: &Big) -> f64 {
 struct Rest {
     objects: u64,
     seen: u64,
-    /// Area of the picture that shows objects that are not listed one by one, in pixels.
+    /// Total visible area of the objects that are not listed, in pixels.
     pixels: f64,
     outside: u64,
 }

@@ -1,4 +1,5 @@
-//! Big numbers, the highest precision. It makes the decisions that are uncertain in double-double.
+//! Big numbers, the highest precision. They are used for decisions that are uncertain in
+//! double-double.
 
 use std::cmp::Ordering;
 
@@ -7,7 +8,8 @@ use dashu_int::Sign;
 
 use super::Angle;
 
-/// A binary floating-point number with 320 bits and an exponent that does not overflow.
+/// A binary floating-point number with a significand of 320 bits and an exponent that does not
+/// overflow.
 #[derive(Clone, Debug)]
 pub struct Big(pub(super) Float);
 

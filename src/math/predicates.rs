@@ -93,8 +93,8 @@ pub fn forms_triangle([a, b, c]: [f64; 3]) -> bool {
 fn exceeds(one: f64, other: f64, bound: f64) -> bool {
     let sum = one + other;
     if sum != bound {
-        // Rounding is monotonic. So if the rounded sum is not equal to `bound`, the exact sum lies
-        // on the same side of `bound`.
+        // Rounding is monotonic. So if the rounded sum is not equal to `bound`, it lies on the same
+        // side of `bound` as the exact sum.
         return sum > bound;
     }
     let error = two_sum(one, other).lo;
@@ -164,8 +164,8 @@ mod tests {
         assert!(!near.equals(&plane(normal, beside)));
         let tilted = [1.0, 2.0_f64.next_up(), 3.0];
         assert!(!near.equals(&plane(tilted, [0.0, 0.0, 1.75])));
-        // In `f64`, the numbers 0.1, 0.2 and 0.3 are not exact multiples of each other, so that
-        // this normal is not exactly parallel to (1, 2, 3).
+        // In `f64`, 0.3 is not exactly three times 0.1, so that this normal is not exactly parallel
+        // to (1, 2, 3).
         assert!(!near.equals(&plane([0.1, 0.2, 0.3], far)));
     }
 

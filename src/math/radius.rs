@@ -83,8 +83,8 @@ impl Wide {
     /// With a greater maximum, the scaled mantissa could underflow.
     const FAR: i64 = 1000;
 
-    /// Returns `mantissa` · 2^`exponent`, where the mantissa may be any number that is not
-    /// negative.
+    /// Returns `mantissa` · 2^`exponent`. The mantissa must not be negative; it need not be between
+    /// 1 and 2.
     pub fn new(mantissa: f64, exponent: i64) -> Self {
         if mantissa == 0.0 || !mantissa.is_finite() {
             return Self {

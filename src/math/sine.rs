@@ -19,9 +19,9 @@ const MAX_RADIANS: f64 = (1u64 << 20) as f64;
 /// most 0.8, a little more than π/4. With 15 terms, the first omitted term of the cosine is r³⁰/30!
 /// < 2^−117, and that of the sine, divided by r, is r³⁰/31! < 2^−122.
 const TERMS: usize = 15;
-/// Maximum truncation error of the series of the sine, divided by its argument, or of the cosine:
-/// 2^−116. The terms alternate and decrease, so that the error is at most the first omitted term,
-/// which is less than 2^−117.
+/// Maximum truncation error of a series: 2^−116. For the cosine, it is the absolute error. For the
+/// sine, it is the error divided by the series' argument. The terms alternate and decrease, so that
+/// the error is at most the first omitted term, which is less than 2^−117.
 const TRUNCATION: f64 = 1.0 / (1u128 << 116) as f64;
 
 /// Constants for the reduction of angles modulo quarter turns, and coefficients of the series.

@@ -16,15 +16,15 @@ use rand::{Rng, RngExt};
 /// Maximum number of fair coins whose heads are drawn by counting random bits, 64 per random
 /// number. The heads of more coins are drawn by transformed rejection. With a much larger maximum,
 /// counting would be slow, because its time grows with the number of coins. With a much smaller
-/// one, Stirling's formula, which the rejection uses, would be inaccurate.
+/// maximum, transformed rejection would be inaccurate, because it uses Stirling's formula.
 const MAX_COUNTED: u64 = 512;
 
 /// Draws the number of successes in `n` trials, each with the success probability `part`/`whole`.
 /// Requires `n` ≤ 2^53.
 pub fn draw(rng: &mut impl Rng, n: u64, part: u64, whole: u64) -> u64 {
     let (mut open, mut successes) = (n, 0);
-    // `rest`/`whole` is the fraction whose binary digits are those digits of p = part/whole that
-    // are not used yet.
+    // The binary digits of p = part/whole are used one after the other. `rest`/`whole` is the
+    // fraction that the remaining digits form.
     let mut rest = part;
     while open > 0 && rest > 0 {
         let ones = heads(rng, open);
@@ -137,7 +137,8 @@ mod tests {
         }
     }
 
-    /// The probabilities of k + 1 heads and of k heads have the ratio (n − k)/(k + 1).
+    /// Checks that the weights of k + 1 heads and of k heads have the same ratio as their
+    /// probabilities, (n − k)/(k + 1).
     #[test]
     fn weights_have_the_ratios_of_binomial_coefficients() {
         for n in [513.0, 600.0, 4097.0, 1e6, 1e9] {
@@ -145,8 +146,9 @@ mod tests {
                 let k = f64::ceil(share * n);
                 let step = ln_weight(k + 1.0, n) - ln_weight(k, n);
                 let expected = libm::log((n - k) / (k + 1.0));
-                // A weight is at most n·ln 2/2 and has a few roundings. The next term of Stirling's
-                // series is 1/(1260·k⁵), whose change from k to k + 1 is even smaller.
+                // A weight is at most n·ln 2/2 and is computed with a few roundings, so the first
+                // term of `limit` covers its error. The second term covers the next term of
+                // Stirling's series, 1/(1260·k⁵), which changes by less than 1e-13 from k to k + 1.
                 let limit = 4.0 * f64::EPSILON * n + 1e-13;
                 assert!(
                     (step - expected).abs() < limit,

@@ -3,8 +3,9 @@
 //! Row k has n_k cells. Each has the width 1/n_k and the height n_k/n, so that its area is 1/n. The
 //! number m of rows is the whole number nearest to √n, or the nearest odd one if n is odd, because
 //! an odd n cannot be divided symmetrically into an even number of rows. n_k is ⌊n/m⌋ or ⌈n/m⌉. The
-//! longer rows are spread evenly, and the row lengths are symmetric about the middle: 16 = 4 + 4 +
-//! 4 + 4, 7 = 2 + 3 + 2, 14 = 3 + 4 + 4 + 3.
+//! longer rows are spread evenly, and the row lengths are symmetric about the middle. For example,
+//! 16 cells are divided into rows of 4, 4, 4 and 4 cells, 7 cells into 2, 3 and 2, and 14 cells
+//! into 3, 4, 4 and 3.
 
 use std::ops::Range;
 

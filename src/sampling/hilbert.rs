@@ -2,9 +2,10 @@
 //!
 //! The curve fills the smallest square that contains the picture and whose side is a power of two
 //! (Hilbert 1891). A pixel's rank is the number of the picture's pixels that come before it on the
-//! curve. It is summed quadrant by quadrant. Pixels of a square whose side is a power of two, and
-//! whose place is a multiple of its side, follow each other without a gap. So whatever is
-//! distributed evenly along the curve is even in both directions of the picture.
+//! curve. This number is summed quadrant by quadrant. Pixels of a square whose side is a power of
+//! two, and whose place is a multiple of its side, follow each other without a gap. Samples that
+//! are distributed evenly along the curve are therefore distributed evenly in both directions of
+//! the picture, too.
 
 use crate::area::Area;
 

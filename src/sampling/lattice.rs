@@ -1,10 +1,10 @@
-//! The possible values of a random offset from a pixel's centre, and equal intervals of them
-//! (strata).
+//! The possible values of a random offset from a pixel's centre, and strata, which are equal
+//! intervals of these values.
 //!
-//! Random offsets are the 2^53 odd multiples of 2^−54 between −1/2 and 1/2. Each is an `f64`, and
-//! none lies on a pixel's edge or on its centre line. They are symmetric about 0, so that a mean
-//! over all of them is exactly that of the pixel. An offset is represented by its place, i.e. by
-//! its index among all offsets, from 0 to 2^53 − 1.
+//! Random offsets are the 2^53 odd multiples of 2^−54 between −1/2 and 1/2. Each of them is an
+//! `f64`, and none lies on a pixel's edge or on its centre line. They are symmetric about 0, so
+//! their mean is exactly the pixel's centre. An offset is represented by its place, i.e. by its
+//! index among all offsets, from 0 to 2^53 − 1.
 
 use super::rng::{scale, scale_by_parts};
 

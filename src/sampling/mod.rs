@@ -65,7 +65,8 @@ pub struct Sampling {
     key: Key,
     total: u64,
     picture: Area,
-    /// Minimum number of samples in a pixel. Not used by the method `scatter`, whose number varies.
+    /// Minimum number of samples in a pixel. The method `scatter` does not use this number, because
+    /// it distributes the samples at random.
     count: u64,
     /// Number of pixels that have one sample more than the minimum number.
     extra: u64,
@@ -170,9 +171,9 @@ impl Sampling {
     /// picture. With N samples and P pixels, the pixel at position i of the Hilbert curve has ⌊(i +
     /// 1)·N/P⌋ − ⌊i·N/P⌋ samples.
     fn even_count(&self, x: u32, y: u32) -> u64 {
-        // The picture has count·P + extra samples, P being its number of pixels, so only the extra
-        // ones vary between pixels. A pixel has one of these if i·extra modulo P is at least P −
-        // extra, where i is its position on the Hilbert curve.
+        // Let P be the number of pixels. The picture has count·P + extra samples, so each pixel has
+        // either `count` samples or one more. A pixel has one more if i·extra modulo P is at least
+        // P − extra, where i is its position on the Hilbert curve.
         let (extra, pixels) = (u128::from(self.extra), u128::from(self.picture.pixels()));
         let remainder = u128::from(hilbert::rank(self.picture, x, y)) * extra % pixels;
         self.count + u64::from(remainder + extra >= pixels)

@@ -1,13 +1,14 @@
 //! `multi_jittered`: one point in each cell of a grid and, at the same time, one in each of n
 //! columns and n rows (Kensler 2013, "Correlated multi-jittered sampling"). `n_rooks` is the
-//! special case of a grid with one row, so that only the second property remains (McKay, Beckman
-//! and Conover 1979, Latin hypercube; Shirley 1991 calls it n-rooks).
+//! special case of a grid with one row. Its points only have the property that one lies in each of
+//! n columns and n rows (McKay, Beckman and Conover 1979, Latin hypercube; Shirley 1991 calls it
+//! n-rooks).
 //!
 //! For n = a·b points, the grid has a columns and b rows, where b is the greatest divisor of n up
 //! to √n. The point of the cell in column i and row j lies in column i·b + σ(j) of the n columns,
 //! and in row j·a + τ(i) of the n rows. Here σ is a random permutation of the b rows, and τ one of
-//! the a columns. Both are the same for the whole pixel. This is the correlation that Kensler adds
-//! to the method of Chiu, Shirley and Wang (1994). If n is prime, b is 1.
+//! the a columns. Kensler's method uses the same σ and τ in the whole pixel, unlike the method of
+//! Chiu, Shirley and Wang (1994), on which it is based. If n is prime, b is 1.
 
 use std::ops::Range;
 

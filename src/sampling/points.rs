@@ -38,8 +38,8 @@ impl Points {
         [&self.x[..end], &self.y[..end]]
     }
 
-    /// Sets the number of points. Returns the lists of x and y coordinates for the caller to
-    /// overwrite; their content is arbitrary.
+    /// Sets the number of points. Returns the lists of x and y coordinates, which contain arbitrary
+    /// numbers. The caller must overwrite them.
     pub(super) fn resized(&mut self, count: usize) -> [&mut [f64]; 2] {
         self.len = count;
         let needed = count.next_multiple_of(LANES);

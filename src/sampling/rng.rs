@@ -44,7 +44,7 @@ impl Key {
 
     /// Generates two random numbers for each point with an index in `points`, and passes them to
     /// `each` in batches. `each` gets the index of the batch's first point, and a pair of numbers
-    /// for each point. Point i has the numbers with the indices 2i and 2i + 1.
+    /// for each point. The two numbers of point i have the indices 2i and 2i + 1.
     #[inline(always)]
     pub fn pairs(self, points: Range<u64>, mut each: impl FnMut(u64, &[[u64; 2]])) {
         let mut batch = [[0; 2]; BATCH];

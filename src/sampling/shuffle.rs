@@ -3,9 +3,9 @@
 use super::rng::Key;
 
 /// Maximum length of a permutation whose entries are stored, in 8 KiB. Such a permutation is chosen
-/// with equal probability among all. For a longer one, each entry is computed by a hash when it is
-/// used. A larger maximum would need more memory. A smaller one would use the hash more often,
-/// which does not choose all permutations with equal probability.
+/// with equal probability among all. The entries of a longer permutation are computed one by one,
+/// by a hash, which does not choose all permutations with equal probability. A larger maximum would
+/// need more memory. With a smaller maximum, the hash would be used more often.
 const MAX_STORED: u64 = 1 << 12;
 
 /// Maximum length of a permutation that is stored in a [`Buffer`] instead of allocated memory. With
@@ -53,8 +53,8 @@ impl<'a> Shuffle<'a> {
         }
     }
 
-    /// Returns the stored entries, which unused entries may follow. Returns `None` if entries are
-    /// not stored but computed one by one.
+    /// Returns the stored entries. If n ≤ 64, the list is padded to 64 entries, and only its first
+    /// n entries are valid. Returns `None` if entries are not stored but computed one by one.
     #[inline(always)]
     pub fn stored(&self) -> Option<&[u16]> {
         match self {
@@ -144,7 +144,7 @@ mod tests {
         }
         // The mean of the 2000 entries is expected to be 3003, with a standard deviation of
         // 6007/√12/√2000 = 39, so a difference of 160 is very unlikely. Two successive entries are
-        // neighbouring numbers once in 3000 cases.
+        // neighbouring numbers once in 3000 cases, so 8 such pairs in 2000 cases are very unlikely.
         assert!((sum / 2000.0 - 3003.0).abs() < 160.0, "{}", sum / 2000.0);
         assert!(neighbours < 8, "{neighbours}");
     }

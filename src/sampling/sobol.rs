@@ -12,9 +12,9 @@
 //! pixel with n points, no two points agree in the first m = ⌈log₂ n⌉ bits of a coordinate. So
 //! below these bits every point is alone in its subtree, and its further bits are simply
 //! independent random bits. The result is the true scrambling, with m decisions per coordinate
-//! instead of 53. One 64-bit hash decides six levels of the tree. The cheaper scrambling of Laine
-//! and Karras by multiplications was not tried: it is known to have weak bits, and it is no cheaper
-//! for the numbers of points that pictures use.
+//! instead of 53. One 64-bit hash decides six levels of the tree. The scrambling of Laine and
+//! Karras by multiplications was not tried: it is known to have weak bits, and it would save no
+//! time for the numbers of points that pictures use.
 
 use std::ops::Range;
 
@@ -183,9 +183,9 @@ impl Owen {
     }
 }
 
-/// Returns the scrambled value of each combination of `levels` bits. `flips` has a random bit for
-/// each node of the tree of these combinations: bit 1 for the root, bits 2 and 3 for its children,
-/// and so on.
+/// Returns the scrambled value of each combination of `levels` bits. The combinations are the nodes
+/// of a tree. `flips` contains a random bit for each node: bit 1 for the root, bits 2 and 3 for its
+/// children, and so on.
 #[inline(always)]
 fn subtree(flips: u64, levels: u32) -> [u8; 1 << LEVELS] {
     let mut bits = [0; 1 << LEVELS];
@@ -201,9 +201,9 @@ fn subtree(flips: u64, levels: u32) -> [u8; 1 << LEVELS] {
     bits
 }
 
-/// Returns the random bits of the nodes on a path down a tree. The `levels` bits of `part` are the
-/// path. `flips` has a random bit for each node: bit 1 for the root, bits 2 and 3 for its children,
-/// and so on.
+/// Returns the random bits of the nodes on a path down a tree. The `levels` bits of `part` describe
+/// the path from the root. `flips` contains a random bit for each node: bit 1 for the root, bits 2
+/// and 3 for its children, and so on.
 fn flips_along(flips: u64, part: u64, levels: u32) -> u64 {
     (0..levels).fold(0, |found, level| {
         let node = 1 << level | part >> (levels - level);

@@ -12,7 +12,8 @@ use crate::scene::Method;
 /// samples.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Tiling {
-    /// Number of cells in each row, from the top. A row of k cells has k/n of the pixel's height.
+    /// Number of cells in each row, from the top. The height of a row of k cells is k/n of the
+    /// pixel's height.
     pub rows: Vec<u64>,
 }
 

@@ -15,8 +15,9 @@ pub const ABOUT_LET: &str =
 /// Markdown text about `for`, which repeats an object of the scene.
 pub const ABOUT_FOR: &str = "`for INDEX < COUNT` in the head of an object repeats it: the index is 0, 1, 2 and so on up to COUNT - 1. Of several, separated by commas, the last one counts fastest, and a count may depend on the indices before it. A `color` may be a pair: the first where the sum of the indices is even.";
 
-/// Describes every meaning of a word, each with an example: as a kind of block, a field, a method,
-/// a function, a constant or a colour. Returns `None` if the language does not have the word.
+/// Describes a word of the language in all its meanings: kind of block, field, method, function,
+/// constant, colour, `let` and `for`. Except for constants and colours, a description includes an
+/// example. Returns `None` if the language does not have the word.
 pub fn word(word: &str) -> Option<String> {
     let mut parts = Vec::new();
     let example = |text: &str| format!("\n\n```scn\n{text}\n```");

@@ -1,9 +1,10 @@
 //! Writes a scene as a text, and checks a scene that was made or changed in code.
 //!
 //! The text has a block for each part of the scene, and states every field's value. Numbers are
-//! written with enough digits that reading the text returns exactly the same scene. Names and
-//! numbers that no text can state are found while the text is written, because reading it would
-//! find other mistakes, or none. All other mistakes are found by reading the text.
+//! written with enough digits that reading the text returns exactly the same scene. Most mistakes
+//! of a scene are found by reading its text. Invalid names and numbers that are not finite are
+//! reported while the text is written: the text might describe another scene without any mistake,
+//! or the parser would report something misleading.
 
 use std::{collections::HashSet, fmt, sync::Arc};
 
@@ -28,8 +29,8 @@ impl Scene {
     /// # Errors
     ///
     /// Returns the mistakes that are found in the [text](#impl-Display-for-Scene) of the scene. If
-    /// a name is not a name of the language, or a number is not finite, only such mistakes are
-    /// returned.
+    /// an object's name is not allowed in the language, or a number is not finite, only mistakes of
+    /// these two kinds are returned.
     pub fn check(&self) -> Result<(), Mistakes> {
         let sources = Sources::new(Source::from_text("scene", self.text()?));
         let reading = read(&sources);
@@ -43,8 +44,9 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// An object's name is not a name of the language, or a number is not finite. The text would
-    /// describe another scene, or have misleading mistakes.
+    /// Returns an error if an object's name is not allowed in the language, or if a number is not
+    /// finite. A text with such a name or number would describe another scene, or its parser errors
+    /// would be misleading.
     pub(crate) fn text(&self) -> Result<String, Mistakes> {
         let Writer { text, problems } = Writer::of(self);
         if problems.is_empty() {
@@ -64,7 +66,8 @@ impl fmt::Display for Scene {
     }
 }
 
-/// Writer of a scene's text. It also collects the names and numbers that no text can state.
+/// Writer of a scene's text. It also collects the problems with names and numbers that the language
+/// cannot express, such as an infinite radius.
 #[derive(Default)]
 struct Writer {
     text: String,

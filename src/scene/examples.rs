@@ -1,9 +1,8 @@
 //! Finds an example value for a field of a block. The example does not contradict the other fields
-//! of the block.
+//! of the block. The schema's example might contradict another field: a corner of a box may be on
+//! the wrong side of the other corner, or a camera may look at its own eye.
 //!
-//! The example in the schema may contradict them: a corner of a box may be on the wrong side of the
-//! other corner, or a camera may look at its own eye. In: the field, and the values of the other
-//! fields. Out: a value in the language's notation.
+//! In: the field, and the values of the other fields. Out: a value in the language's notation.
 
 use glam::DVec3;
 
@@ -14,8 +13,9 @@ use crate::{
     schema::{BOX, CAMERA, FieldRow, TRIANGLE, Value},
 };
 
-/// Returns an example for `field` that does not contradict the values of the other fields, which
-/// `given` returns by name. Returns the field's own example if no tried value fits.
+/// Returns an example for `field` that does not contradict the values of the other fields. `given`
+/// returns the value of a field by its name. If every value that is tried contradicts another
+/// field, returns the schema's example.
 pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -> String {
     // Names of the fields that contain points. If the schema's example for `field` contradicts the
     // other fields, points near the values of these fields are tried, then points near the origin.

@@ -19,8 +19,8 @@ pub struct Fixed {
     /// The fixes that were applied, in order.
     pub done: Vec<Done>,
     /// Number of remaining errors that only unsafe fixes would correct. It is 0 if unsafe fixes
-    /// were allowed. A fix is unsafe if it chooses among several meanings, or removes or changes
-    /// something.
+    /// were allowed. A fix is unsafe if it chooses one of several possible meanings, or if it
+    /// removes or changes something that the author wrote.
     pub held_back: usize,
     /// Number of remaining errors whose fixes insert only a placeholder, i.e. a made-up value.
     /// Fixes with placeholders are never applied.
@@ -31,7 +31,8 @@ pub struct Fixed {
     pub waiting: usize,
 }
 
-/// A fix that was applied.
+/// Line and column of the problem, in the text to which the fix was applied. The place in the
+/// original file may differ, because earlier fixes may have changed the lines.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Done {
     /// Line and column of the problem in the text to which the fix was applied. Earlier fixes may

@@ -67,13 +67,15 @@ impl LoweredBlock<'_> {
         }
     }
 
-    /// Returns the span and the value of a field; `None` if the block does not have it.
+    /// Returns the span and the value of a field. Returns `None` if the block does not have the
+    /// field.
     pub fn given<T>(&self, field: FieldHandle<T>) -> Option<Given> {
         debug_assert_eq!(self.row.kind, field.kind, "{}", field.name);
         self.given.get(field.index).copied().flatten()
     }
 
-    /// Returns the span and the value of the field `name`; `None` if the block does not have it.
+    /// Returns the span and the value of the field `name`. Returns `None` if the block does not
+    /// have this field.
     pub fn given_by_name(&self, name: &str) -> Option<Given> {
         let index = self.row.fields.iter().position(|row| row.name == name)?;
         self.given.get(index).copied().flatten()

@@ -1,4 +1,4 @@
-//! Reads a scene file into a [`Scene`]: plain data without names or formulas.
+//! Reads a scene file into a [`Scene`], which is plain data.
 //!
 //! In: the texts of a file and of its `--set` arguments, which are parsed here. Out: a [`Scene`],
 //! or problems. In a [`Scene`], defaults are filled in and expressions are evaluated. Alternative

@@ -31,14 +31,14 @@ pub struct Reading {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// A whole scene: objects, the camera that sees them, and the samples of the picture.
+/// A whole scene: the objects, the camera, and how the picture is sampled.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// The picture's size and background.
     pub image: Image,
     /// The camera.
     pub camera: Camera,
-    /// The method and the number of samples.
+    /// The method, the number of samples, and the seed of the random numbers.
     pub sampler: Sampler,
     /// Objects in the order of the file. If two objects are at the same distance, the first one is
     /// visible. Several scenes can share the objects, for example while the camera moves.
@@ -61,8 +61,8 @@ pub struct Image {
 pub struct Camera {
     /// The eye, through which all rays pass.
     pub eye: DVec3,
-    /// The view direction. A point that defines it differs from the eye, so that the direction is
-    /// not zero.
+    /// The view direction. If it is given by a point, the point differs from the eye, so the
+    /// direction is not zero.
     pub view: View,
     /// The up vector, not zero; it may be parallel to the view direction.
     pub up: DVec3,
@@ -93,9 +93,9 @@ pub enum View {
 /// parallel to its view direction: −z, or +y if up is parallel to z.
 ///
 /// Let h be the component of this direction that is perpendicular to up. The top of the picture
-/// lies in the direction h if the camera looks against up, and in the direction −h if it looks
-/// along up. A camera that looks along h with this up vector, and is then tilted down or up by 90°,
-/// shows the same picture.
+/// lies in the direction −h if the camera looks along up, and in the direction h if it looks in the
+/// opposite direction. A camera that looks along h with this up vector, and is then tilted down or
+/// up by 90°, shows the same picture.
 pub fn level_direction(up: DVec3) -> DVec3 {
     if up.x == 0.0 && up.y == 0.0 {
         DVec3::Y
@@ -198,7 +198,7 @@ impl Object {
 }
 
 impl Scene {
-    /// Returns the object with a name, such as `Ball` or `Ball[3, 1]`.
+    /// Returns the object whose name is `name`, such as `Ball` or `Ball[3, 1]`.
     ///
     /// ```
     /// let scene = pinhole::Scene::parse(
@@ -215,8 +215,8 @@ impl Scene {
         self.objects.iter().find(|object| object.is_named(name))
     }
 
-    /// Returns a mutable reference to the object with a name. The objects are copied first if
-    /// another scene shares them.
+    /// Returns a mutable reference to the object whose name is `name`. The objects are copied first
+    /// if another scene shares them.
     pub fn object_mut(&mut self, name: &str) -> Option<&mut Object> {
         let index = self
             .objects

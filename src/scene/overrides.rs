@@ -109,8 +109,8 @@ fn one(text: &str, id: SourceId) -> Result<(Option<Name<'_>>, Name<'_>, usize), 
     Ok((block, name, target.len() + 1))
 }
 
-/// Returns the name in `text`, which starts at the offset `start` of the argument. Returns `None`
-/// if the text is not a name.
+/// Returns the name in `text`, which is a part of the argument and starts at its offset `start`.
+/// Returns `None` if the text is not a name.
 fn name(text: &str, start: usize, id: SourceId) -> Option<Name<'_>> {
     let trimmed = text.trim();
     let start = start + text.len() - text.trim_start().len();
@@ -165,7 +165,8 @@ pub fn is_set(item: &Item<'_>) -> bool {
 }
 
 impl<'s> Override<'s> {
-    /// Replaces the value of the target, if it is among `items`. Returns whether it was found.
+    /// Replaces the value of the target if the target is among `items`. Returns whether the target
+    /// was found.
     fn put_into(&self, items: &mut [Item<'s>]) -> bool {
         let setting = self.block.and_then(|block| setting(block.text));
         for item in items {
@@ -230,8 +231,8 @@ fn field(block: &str, name: &str, items: &[Item<'_>]) -> Option<&'static schema:
     setting(block).or_else(object)?.field(name)
 }
 
-/// Returns the row of the kind `name` in the language's table, if it is image, camera or sampler. A
-/// scene has at most one such block.
+/// Returns the row of the image, the camera or the sampler in the language's table. Returns `None`
+/// if `name` is not one of these three keywords. A scene has at most one block of each of them.
 fn setting(name: &str) -> Option<&'static schema::BlockRow> {
     schema::block(name).filter(|row| !row.is_object)
 }

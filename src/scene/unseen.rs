@@ -4,8 +4,8 @@
 //! In: a camera and the objects. Out: the reason why no object is in the picture, if bounding
 //! spheres show it; and whether a board's squares are too small for the precision of a sample's
 //! coordinates. An object is treated as visible if the answer is uncertain, or if another object
-//! hides it, so a warning is never false. Computations are in `f64`; each comparison leaves a
-//! margin of [`MARGIN`] times the lengths in it.
+//! hides it, so a warning is never false. Computations are in `f64`. Each comparison of lengths
+//! leaves a margin for rounding errors, which is [`MARGIN`] times the lengths.
 
 use glam::DVec3;
 
@@ -36,7 +36,8 @@ pub enum WhyUnseen {
     Behind,
     /// All objects are beside the window, or behind the camera.
     Outside,
-    /// No object is in the picture, but one would be without this field, `near` or `far`.
+    /// No object is in the picture, but one would be visible without the near or the far plane. The
+    /// text is the field's name, `near` or `far`.
     Clipped(&'static str),
 }
 
@@ -99,9 +100,10 @@ impl Outside {
 /// get the same colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
     // If the camera looks straight down or up, its up vector may be parallel to the view direction,
-    // so the directions of the window's sides are unknown. They are then assumed to be x and z.
-    // With any other directions, the window's extents along x and z are at least its shorter side.
-    // Squares that are lost under this assumption are therefore lost in any case.
+    // so the directions of the window's sides are unknown. They are then assumed to be x and z, so
+    // the window's extents along x and z are its two sides. For any other directions, both extents
+    // are at least the shorter side, so squares that are lost under this assumption are lost in any
+    // case.
     let straight = || {
         let (from, to) = camera.view.ends(camera.eye);
         let along_y = (to - from).normalize().y.abs() > 1.0 - MARGIN;
@@ -212,12 +214,12 @@ impl Sight {
         ]
     }
 
-    /// Returns whether a whole sphere lies clearly on the outer side of a plane, i.e. whether all
-    /// of its points p satisfy
+    /// Returns whether a whole sphere lies on the outer side of a plane, i.e. whether all of its
+    /// points p satisfy
     ///
     ///   n·(p − e) < bound
     ///
-    /// by a margin. Here e is the eye and n the plane's normal, of length 1.
+    /// by a margin for rounding errors. Here e is the eye and n the plane's normal, of length 1.
     fn is_beyond(&self, (center, radius): (DVec3, f64), n: DVec3, bound: f64) -> bool {
         let size = center.length() + radius + self.eye.length() + bound.abs();
         // If a number is NaN, the comparison is `false`, so the sphere may be visible.

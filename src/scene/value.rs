@@ -47,8 +47,8 @@ pub fn negate(value: Value) -> Option<Value> {
     }
 }
 
-/// Returns the quotient of two angles. If both are in degrees or both in radians, it is the
-/// quotient of these numbers.
+/// Returns the quotient of two angles. If both angles are in degrees, or both in radians, their
+/// numbers are divided without conversion, to avoid its rounding errors.
 fn ratio(a: Angle, b: Angle) -> f64 {
     if a.radians == 0.0 && b.radians == 0.0 {
         return a.degrees / b.degrees;
@@ -60,7 +60,7 @@ fn ratio(a: Angle, b: Angle) -> f64 {
 }
 
 /// Returns the result of a function, or `None` if an argument has another type than the function
-/// takes. The channels of an `rgb` may be out of range.
+/// takes. Does not check that the channels of an `rgb` are between 0 and 255.
 pub fn call(function: &str, arguments: &[Value]) -> Option<Value> {
     use Value::{Number, Vector};
     Some(match (function, arguments) {

@@ -20,7 +20,7 @@ use crate::{
 /// Bounds of an object as seen from the eye.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
-    /// Ranges of X and Y, the components of a ray's direction to the right and down. A ray whose X
+    /// Ranges of X and Y, the rightward and downward components of a ray's direction. A ray whose X
     /// or Y is outside of its range misses the object.
     pub across: [Interval; 2],
     /// Upper bound of the inverse depths of the object's points.
@@ -118,9 +118,9 @@ fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
     if z + radius < 0.0 {
         return Hull::Behind;
     }
-    // The differences z − R and z + R of the centre's z and the radius R have one rounding each, so
-    // that their product has a small relative error. If the product is positive, its sum with c²
-    // has a small relative error, too.
+    // The difference z − R and the sum z + R of the centre's z and the radius R have one rounding
+    // each, so their product has a small relative error. If the product is positive, its sum with
+    // c² has a small relative error, too.
     let below = (z - radius) * (z + radius);
     if !(z > radius && below > SMALLEST) {
         return Hull::Unbounded;

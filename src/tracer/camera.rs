@@ -106,9 +106,9 @@ impl Basis {
 /// Bounds on the [`Direction`]s of rays through sample points.
 #[derive(Clone, Copy, Debug)]
 pub struct Window<R> {
-    /// Maximum of |X|, the component to the right of a ray's direction.
+    /// Maximum of |X|, where X is the rightward component of a ray's direction.
     pub x: R,
-    /// Maximum of |Y|, the component downwards of a ray's direction.
+    /// Maximum of |Y|, where Y is the downward component of a ray's direction.
     pub y: R,
     /// Z, the component ahead, which is the same for all rays.
     pub z: R,
@@ -158,8 +158,8 @@ pub struct Direction<T> {
 }
 
 /// A point of the picture, in pixels from its centre, x to the right and y down. Each coordinate is
-/// stored as two numbers whose exact sum it is. The reason is that a pixel's centre plus an offset
-/// may have too many digits for one `f64`.
+/// stored as the exact sum of two numbers, because a pixel's centre plus an offset may have too
+/// many digits for one `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PicturePoint {
     /// The coordinate x, as two summands.
@@ -169,8 +169,8 @@ pub struct PicturePoint {
 }
 
 impl<T: Real> Camera<T> {
-    /// Prepares the camera of a scene. Sample points may be at most `reach` pixels from the
-    /// picture's centre in x and y.
+    /// Prepares the camera of a scene. `reach` is the maximum distance of sample points from the
+    /// picture's centre in x and in y, in pixels.
     pub fn new(basis: &Basis, scene: &Scene, reach: DVec2) -> Self {
         let (eye, image) = (scene.camera.eye, scene.image);
         let widest = basis.pitch.times(&Big::from_f64(reach.max_element()));
@@ -271,14 +271,16 @@ impl<T: Real> Camera<T> {
     }
 }
 
-/// Range of the binary exponent of the greatest length in a scene; if the exponent is outside of
-/// the range, all lengths are multiplied by a power of two. Squares of lengths from 2^−500 to 2^400
-/// are well within the range of `f64`, 2^−1022 to 2^1024. The lower end, −300, leaves room for
-/// lengths 2^−200 times the greatest.
+/// Range of the binary exponent of the greatest length in a scene. If the exponent is outside of
+/// the range, all lengths are multiplied by a power of two. The squares of lengths from 2^−500 to
+/// 2^400 are well within the range of `f64`, 2^−1022 to 2^1024. The lower end of the range is −300
+/// rather than −500, so that the scene may also contain lengths that are 2^200 times shorter than
+/// the greatest.
 const LENGTHS: std::ops::RangeInclusive<i32> = -300..=400;
 
-/// Returns the binary logarithm of the factor that brings the greatest length of a scene into the
-/// range of the binary exponents [`LENGTHS`]. Returns 0 if the length is already within this range.
+/// Returns the binary logarithm of the factor by which all lengths of a scene are multiplied. The
+/// factor is 1 if the binary exponent of the greatest length is within [`LENGTHS`]. Otherwise, the
+/// factor moves this exponent into that range.
 fn exponent_of_lengths(scene: &Scene) -> i32 {
     let shapes = scene.objects.iter().map(|object| &object.shape);
     let farthest = shapes.map(|shape| shape.greatest_length(scene.camera.eye));

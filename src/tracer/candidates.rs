@@ -64,8 +64,9 @@ pub fn narrowed(
 /// Replaces `out` by all objects that may be seen in the area `part`, in file order.
 ///
 /// Returns `false` and leaves `out` unchanged if certainly more than `most` objects have bounds
-/// that meet the area, or if `is_worth` returns `false`. The arguments of `is_worth` are the number
-/// of objects found and the mean number of objects whose bounds contain a ray through the area.
+/// that meet the area, or if `is_worth` returns `false`. The caller can use `is_worth` to reject
+/// areas that show too many objects. The arguments of `is_worth` are the number of objects found
+/// and the mean number of objects whose bounds contain a ray through the area.
 #[must_use]
 pub fn within(
     world: &World,

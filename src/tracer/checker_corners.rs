@@ -67,8 +67,8 @@ pub struct CheckerPixel {
 struct BoardBlock {
     block: Area,
     squares: CheckerForms,
-    /// Minimum distance of a corner from the edges of its square, in x and in z, in squares. At a
-    /// smaller distance, the square of the corner is uncertain.
+    /// Minimum distance, in squares, of a corner from the edges of its square, for x and for z. At
+    /// a smaller distance, the square of the corner is uncertain.
     slack: [f64; 2],
     /// The position x of each column of pixel corners, measured from the block's centre in units of
     /// the block's width.
@@ -273,8 +273,8 @@ impl BoardBlock {
         let [width, height] = [width, height].map(f64::from);
         let local = |block: &LocalForm| {
             let [a, b, c] = block.factors;
-            // The error bound of the block's form is doubled: it covers the error of the factors
-            // and the error of the value at the pixel's centre.
+            // The error bound of the block's form is doubled. One half covers the errors of the
+            // factors, the other half the error of the value at the pixel's centre.
             LocalForm::new([a / width, b / height, a * x + b * y + c], 2.0 * block.rad)
         };
         let CheckerForms { across, below, odd } = &self.squares;
@@ -317,8 +317,8 @@ impl BoardBlock {
                     corner[axis] =
                         floor(self.squares.across[axis].at(x, y) / self.squares.below.at(x, y));
                     // The corner is uncertain, so its computed coordinate is at most `slack` from a
-                    // line between squares. Its true coordinate is at most `slack` from the
-                    // computed one.
+                    // line between squares. The true coordinate is at most `slack` from the
+                    // computed one, so it is at most twice `slack` from the line.
                     doubt[axis] = 2.0 * self.slack[axis];
                 }
             }
@@ -332,7 +332,7 @@ impl BoardBlock {
 }
 
 impl CheckerPixel {
-    /// Returns the ranges of the squares in the pixel, in x and in z, as first and last square.
+    /// Returns the indices of the first and the last square in the pixel, for x and for z.
     pub(crate) fn ranges(&self) -> [(f64, f64); 2] {
         self.corners.map(|squares| {
             let low = squares.into_iter().fold(f64::INFINITY, f64::min);
@@ -414,8 +414,8 @@ impl CheckerForms {
         (inherited + (greatest + 1.0) * LOCAL_ROUNDING) * UP
     }
 
-    /// Returns the ranges of the squares in the rectangle, in x and in z, as first and last square.
-    /// A range may have one square too many at each end. Returns `None` if the denominator of the
+    /// Returns the indices of the first and the last square in the rectangle, for x and for z. A
+    /// range may contain one square too many at each end. Returns `None` if the denominator of the
     /// board's coordinates is not clearly positive or an error is too large.
     pub(super) fn ranges(&self) -> Option<[(f64, f64); 2]> {
         let least = self.least()?;

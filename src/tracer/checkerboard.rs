@@ -21,9 +21,9 @@ use crate::{
 };
 
 /// Limit, in squares, of the distance by which the origin of a board's coordinates is moved.
-/// [`Checkerboard::local`] moves the origin to the part of the board that a rectangle shows, unless
-/// the distance reaches the limit. The distance is a quotient, rounded to a whole number. From 2^52
-/// on, this need not be the nearest whole number, and its parity could be wrong.
+/// [`Checkerboard::local`] moves the origin to the part of the board that a rectangle shows, if the
+/// distance is below the limit. The distance is a quotient that is rounded to a whole number. From
+/// 2^52 on, an `f64` has no fractional digits, so the quotient may be wrong by a whole square.
 const MOST_SQUARES: f64 = (1u64 << 52) as f64;
 
 /// A checkerboard prepared for one picture.
@@ -142,9 +142,8 @@ impl<T: Real> Checkerboard<T> {
             odd ^= times as i64 & 1 == 1;
             let multiple = T::from_f64(times);
             let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&multiple)));
-            // The error bound `rad` of the denominator ℓ is at least 12 roundings of ℓ. It is
-            // doubled, so that it also covers the roundings of the multiple of ℓ and of the
-            // subtraction.
+            // `rad` bounds the error of the denominator ℓ, and is at least 12 roundings of ℓ. The
+            // doubled bound also covers the roundings of the multiple of ℓ and of the subtraction.
             (factors, own_rad + rad * (2.0 * times.abs()))
         });
         let mut forms = [a, b, (below, rad)];
@@ -189,7 +188,8 @@ struct EyeOffset {
 }
 
 impl EyeOffset {
-    /// Splits a coordinate of the eye by the side `square` of the squares, without rounding.
+    /// Splits a coordinate of the eye into whole squares with the side `square` and a remainder,
+    /// without rounding.
     fn new(coordinate: f64, square: f64) -> Self {
         // The remainder operation of `f64` is exact, even with an infinite divisor. Differences of
         // numbers within a factor of two of each other are exact, too (Sterbenz). The result

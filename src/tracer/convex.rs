@@ -33,8 +33,8 @@ pub struct Convex<T: Real> {
     forms: Vec<Form<T>>,
     /// Number of the forms that bound the object.
     edges: u8,
-    /// Index in `forms` of the first form of the third group: `edges` plus the number of the faces
-    /// where rays first hit the object.
+    /// Index in `forms` of the first inverse depth of a face where rays do not first hit the
+    /// object. It is `edges` plus the number of the other faces.
     firsts: u8,
     /// Numbers that identify the planes of the faces. The faces where rays first hit the object
     /// come before the other faces.
@@ -118,8 +118,9 @@ impl<T: Real> Convex<T> {
         faces.find_map(|(face, form)| (self.part(face) == part).then_some(form))
     }
 
-    /// Returns the nearest crossing in front of the eye: where the ray enters the object or, from
-    /// inside, leaves it. Returns `None` if the ray misses the object. A ray on an edge hits it.
+    /// Returns the nearest crossing in front of the eye. If the eye is inside the object, the ray
+    /// leaves the object there; otherwise, it enters. Returns `None` if the ray misses the object.
+    /// A ray on an edge hits the object.
     #[inline]
     pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
         // In the highest precision, the values of all edge functions may be 0. The object is then
@@ -185,8 +186,8 @@ impl<T: Real> Convex<T> {
             if !difference.is_zero() && difference.is_negative() == which.is_lt() {
                 extreme = other;
             }
-            // If an overflow has left NaN, the comparison fails, and the difference is treated as
-            // unclear.
+            // If an overflow has left NaN, the comparison is false, so the crossing is assigned to
+            // an edge.
             let is_clear = distance > rad * (2.0 * UP);
             if !is_clear {
                 // The crossing cannot be assigned to one plane: near an edge, the ray crosses two

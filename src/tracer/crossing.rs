@@ -6,8 +6,8 @@ use crate::math::{Ball, Real};
 /// A crossing of a ray with the surface of an object.
 #[derive(Clone, Debug)]
 pub struct Crossing<T: Real> {
-    /// Inverse depth 1/λ of the point λr, where r is the ray's direction; positive. The nearest
-    /// crossing has the greatest inverse depth.
+    /// Inverse depth 1/λ of the point λr, where r is the ray's direction. It is positive. The
+    /// nearest crossing has the greatest inverse depth.
     pub inverse_depth: Ball<T>,
     /// The part of the object's surface that contains the crossing.
     pub part: SurfacePart,

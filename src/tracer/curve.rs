@@ -16,9 +16,9 @@ use crate::math::{Ball, Ball3, Double, Radius, Real};
 use super::{camera::Camera, form::Form, interval::Interval, sphere::Sphere, sub_pixel::SubPixel};
 
 /// Minimum error bound ([`BoundaryLine::rad`]) at which a boundary line is computed again, in a
-/// higher precision than double-double. The value is eight unit roundoffs of `f64`. A much smaller
-/// one would be useless, because storing the line's factors as `f64` alone causes an error of three
-/// unit roundoffs.
+/// higher precision than double-double. The value is eight unit roundoffs of `f64`. With a much
+/// smaller value, lines would be computed again in vain: storing a line's factors as `f64` alone
+/// causes an error of three unit roundoffs.
 pub(crate) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
 /// A curve that separates what is seen in a pixel.
@@ -88,8 +88,8 @@ impl<T: Real> SubPixelFrame<T> {
     /// Places a sub-pixel in the view plane of a camera.
     pub fn new(camera: &Camera<T>, sub_pixel: SubPixel) -> Self {
         let r = sub_pixel.middle(camera);
-        // A coordinate of the direction has five roundings, and the side has fewer. An error bound
-        // of eight roundings therefore covers them.
+        // A coordinate of the direction is computed with five roundings, and the side with fewer.
+        // An error bound of eight roundings therefore covers both.
         let ball = |mid: T| Ball {
             rad: mid.magnitude() * (8.0 * T::UNIT) + T::TINY,
             mid,
@@ -152,9 +152,9 @@ impl<T: Real> SubPixelFrame<T> {
             | (InverseDepth::Sphere(sphere), InverseDepth::Plane(plane)) => {
                 let (c, square) = sphere.parts();
                 let (factors, rad) = self.local(plane);
-                // The factors of the plane are converted to the sphere's unit of inverse depth.
-                // This is done by their exponents, because the inverse of the sphere's scale may
-                // exceed the range of `f64`.
+                // The factors of the plane are converted to the sphere's unit of inverse depth,
+                // which is a power of two. Its exponent is used, because the inverse of the
+                // sphere's scale may exceed the range of `f64`.
                 let exponent = -(libm::frexp(sphere.scale()).1 - 1);
                 let linear = factors.map(|mid| Ball { mid, rad }.scaled(exponent));
                 Some(self.circle(&c, &square, &linear, &Ball::exact(1.0)))

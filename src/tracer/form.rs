@@ -23,9 +23,9 @@ pub struct Form<T: Real> {
     rads: Option<Box<[T::Radius; 3]>>,
 }
 
-/// Number of roundings in a value of a linear form ([`Form`]). A coordinate has 5 roundings, its
-/// product with a factor has 1, and the sum has 2. The total is 8; the value 12 leaves room for
-/// products of rounding errors.
+/// Number of roundings in the computation of a linear form's value ([`Form`]). There are 5 in a
+/// coordinate, 1 in its product with a factor, and 2 in the sum. The total is 8; the value 12
+/// leaves room for products of rounding errors.
 const FORM_ROUNDINGS: f64 = 12.0;
 
 impl<T: Real> Form<T> {
@@ -86,9 +86,8 @@ impl<T: Real> Form<T> {
             // The bound of the rounding errors of the difference assumes that |X|, |Y| and Z are at
             // most 1.
             rad: (self.rad + other.rad + sum * (FORM_ROUNDINGS * T::UNIT)) * UP,
-            // The sum of the two forms' error bounds is doubled. It contains the rounding errors of
-            // both forms' factors, so that its double also covers the rounding of the factors'
-            // differences.
+            // The sum of the two forms' error bounds covers the rounding errors of both forms'
+            // factors. Doubled, it also covers the rounding of the factors' differences.
             rads: self
                 .rads
                 .as_ref()

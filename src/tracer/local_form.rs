@@ -19,13 +19,14 @@ use crate::{
 
 /// Upper bound of the rounding error of a [`LocalForm`]'s value, divided by the sum of the absolute
 /// values of the form's factors. The value is four roundings: one for each factor, one for the
-/// factor's division by the error bound ([`LocalForm::line`]), and two for products and sums.
-/// Products and sums are small, because offsets are at most ½.
+/// factor's division by the error bound ([`LocalForm::line`]), and two for the products and sums of
+/// the evaluation. Two are enough for these, because offsets are at most ½, so a product is at most
+/// half of its factor.
 const LINEAR_ROUNDING: f64 = 4.0 * f64::UNIT;
 /// Upper bound of the rounding error of a [`LocalQuadratic`]'s value, divided by the sum of the
-/// absolute values of the form's factors. The value is 16 roundings. It covers at most five
-/// roundings in each of the form's six terms, and the roundings of the products and sums of the
-/// terms.
+/// absolute values of the form's factors. The value is 16 roundings. Five of them cover the
+/// roundings of each factor, relative to this factor. The others cover the roundings of products
+/// and sums in the evaluation.
 pub const LOCAL_ROUNDING: f64 = 16.0 * f64::UNIT;
 /// Error bound for underflow in the evaluation of a form, which has at most 16 products. If a
 /// product is below the normal numbers of `f64`, its error is at most half of the least positive
@@ -114,8 +115,8 @@ impl Form<f64> {
 }
 
 impl LocalForm {
-    /// Builds a form from its factors. `inherited` is the error that the form's values have from
-    /// the errors of the factors; the rounding errors of the evaluation are added.
+    /// Builds a form from its factors. `inherited` is a bound on the error that the factors' errors
+    /// cause in the form's values. The rounding errors of the evaluation are added.
     #[inline]
     pub fn new(factors: [f64; 3], inherited: f64) -> Self {
         let [a, b, c] = factors.map(f64::abs);
@@ -157,8 +158,8 @@ impl LocalForm {
 }
 
 impl LocalQuadratic {
-    /// Builds a form from its factors. `inherited` is the error that the form's values have from
-    /// the errors of the factors; the rounding errors of the evaluation are added.
+    /// Builds a form from its factors. `inherited` is a bound on the error that the factors' errors
+    /// cause in the form's values. The rounding errors of the evaluation are added.
     pub fn new(factors: [f64; 6], inherited: f64) -> Self {
         let sizes: f64 = factors.iter().map(|factor| factor.abs()).sum();
         let rad = (inherited + sizes * LOCAL_ROUNDING + UNDERFLOW_ERROR) * UP;

@@ -151,8 +151,9 @@ impl Object<f64> {
         }
     }
 
-    /// Returns the range of the inverse depths over a rectangle at which rays hit the object for
-    /// the second time. Returns `None` if no ray hits the object twice.
+    /// Returns the range of the inverse depths of second crossings: those where a ray through the
+    /// rectangle hits the object for the second time. Returns `None` if no ray hits the object
+    /// twice.
     pub fn behind(&self, patch: &Patch) -> Option<Interval> {
         match self.surface_kind() {
             SurfaceKind::Flat(convex) => convex.behind(patch),

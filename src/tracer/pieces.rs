@@ -20,8 +20,8 @@ pub(super) enum Faces {
     All,
 }
 
-/// For each object of the divided scene, the index of the original object in the file. If the
-/// object is a face of a box, also the number of the face. Empty if no object was divided.
+/// Origin of each object of the divided scene: the index of the original object in the file and,
+/// for a face of a box, the number of the face. The list is empty if no object was divided.
 #[derive(Debug, Default)]
 pub(super) struct Pieces(Vec<(usize, Option<u8>)>);
 

@@ -17,8 +17,8 @@ use crate::{
     math::{Ball, Ball3, Big, Real},
 };
 
-/// A crossing of a ray with a surface, for output. Each number is the correctly rounded exact
-/// value.
+/// A crossing of a ray with a surface, as `probe` prints it. Each number is the correctly rounded
+/// exact value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Hit {
@@ -114,8 +114,8 @@ fn rounded(x: &Big) -> Ball<Big> {
     }
 }
 
-/// Returns the nearest `f64`, or 0 if the number cannot be distinguished from 0. Otherwise, a point
-/// in the plane y = 0 might be printed with a height of 1e-97.
+/// Returns the nearest `f64`, or 0 if the number cannot be distinguished from 0. Without this
+/// exception, a point in the plane y = 0 might be printed with a height of 1e-97.
 fn settled(x: &Ball<Big>) -> f64 {
     match x.sign() {
         Ok(Ordering::Equal) => 0.0,

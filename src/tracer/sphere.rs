@@ -44,17 +44,16 @@ pub struct Sphere<T: Real> {
     /// Power of two by which an inverse depth in the sphere's own unit is multiplied to give the
     /// inverse depth in the world's unit.
     scale: f64,
-    /// Error bound, in the camera's window, of Q, a quarter of the discriminant of the equation for
-    /// a ray's crossings ([`Sphere`]).
+    /// Error bound of Q = R² r·r − |c × r|² for all rays in the camera's window. Here c is the
+    /// centre, R the radius and r a ray's direction.
     rad_q: T::Radius,
-    /// Error bound, in the camera's window, of c·r, the scalar product of the sphere's centre c and
-    /// a ray's direction r.
+    /// Error bound of the scalar product c·r for all rays in the camera's window. Here c is the
+    /// centre and r a ray's direction.
     rad_b: T::Radius,
 }
 
-/// Number of roundings in a value of Q, a quarter of the discriminant of the equation for a ray's
-/// crossings ([`Sphere`]). A linear form has 12 roundings, its square therefore 24, and the sum of
-/// squares adds 8.
+/// Number of roundings in a value of Q = R² r·r − |c × r|² ([`Sphere`]). A linear form is computed
+/// with 12 roundings, so its square is computed with 24. The sum of squares adds 8.
 const SPHERE_ROUNDINGS: f64 = 32.0;
 
 impl<T: Real> Sphere<T> {
@@ -416,8 +415,9 @@ impl Sphere<Double> {
     }
 }
 
-/// Computes C = c·c − R² ([`Sphere`]) with a small relative error, multiplied by the square of
-/// 2^`exponent`. Returns it with the exact sign of C.
+/// Computes C = c·c − R² ([`Sphere`]) with a small relative error, and returns it with its exact
+/// sign. `from_eye` and `square` contain lengths that were multiplied by 2^`exponent`. C is scaled
+/// accordingly: it is multiplied by the square of this factor.
 fn power<T: Real>(
     eye: DVec3,
     center: DVec3,

@@ -171,9 +171,10 @@ fn the_quadtree_changes_nothing() {
     }
 }
 
-/// In the rows at the horizon, `f64` leaves about 1e-10 of the samples undecided. If objects lie in
-/// one plane, `f64` must nevertheless decide every sample, because a higher precision takes a
-/// hundred times as long.
+/// Checks that `f64` alone decides every one of many random samples, because a higher precision
+/// takes a hundred times as long. In the second scene, two objects lie in one plane. `f64` leaves
+/// samples undecided only in the rows at the horizon, about 1e-10 of them, so none is expected
+/// here.
 #[test]
 fn f64_alone_decides_nearly_everything() {
     let figure = [
@@ -279,8 +280,8 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
             assert!(all_found);
             let patch = Patch::new(camera, part);
             candidates::visible_among(&world, &patch, 0..world.object_count(), &mut all);
-            // The quadtree's bounds may exclude objects that the plain loop includes, but not the
-            // reverse.
+            // The quadtree's bounds can exclude objects that the plain loop includes. The reverse
+            // must not happen.
             let objects = |candidates: &[VisibilityCandidate]| -> Vec<_> {
                 candidates
                     .iter()
@@ -303,9 +304,9 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
     assert!(seen > 1000, "{seen} points show an object");
 }
 
-/// If objects lie in one plane, the tracer tests at nearly every sample point whether two of them
-/// lie in one plane. The test must not prepare objects in a higher precision. Otherwise, each point
-/// would take as long as in a scene whose objects do not fit into the cache of prepared objects.
+/// Checks that the tracer prepares no objects in a higher precision to find out whether two objects
+/// lie in one plane. If objects lie in one plane, it must find this out at nearly every sample
+/// point, so preparing objects would make every point slow.
 #[test]
 fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
     let mut shapes = vec![

@@ -270,7 +270,8 @@ impl<'s> Evaluator<'_, 's> {
         self.problems.push(problem);
     }
 
-    /// Returns whether all channels of a colour lie from 0 to 255. Reports those that do not.
+    /// Returns whether all channels of a colour are between 0 and 255. Reports each channel that is
+    /// not.
     fn in_range(&mut self, color: Color, arguments: &[Element<'s>]) -> bool {
         let mut fits = true;
         let names = ["red", "green", "blue"];
@@ -341,9 +342,9 @@ impl<'s> Evaluator<'_, 's> {
             "asin" | "acos" => (
                 format!("`{name}` takes a number from -1 to 1"),
                 match known {
-                    // The number is out of range by more than a rounding error, so it has no
-                    // inverse sine or cosine. A quotient has a help of its own, since its operands
-                    // may be in the wrong order.
+                    // The argument is not between −1 and 1, by more than a rounding error, so it
+                    // has no inverse sine or cosine. The help for a quotient also asks whether its
+                    // two operands are in the right order.
                     [Value::Number(x)] if x.abs() > 1.0 + 1e-9 && !written.contains('/') => {
                         "no angle has that".to_owned()
                     }

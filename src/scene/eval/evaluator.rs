@@ -193,9 +193,9 @@ impl<'s> Evaluator<'_, 's> {
         is_set.then_some((name, from))
     }
 
-    /// In a product, finds the factor that is a name for a plain number, such as `a` in `a * 2`
+    /// Finds the factor of a product that is a name for a plain number, such as `a` in `a * 2`
     /// after `let a = 30`. Returns the name, and the number as it is written. Returns `None` if
-    /// there is no such factor, or more than one.
+    /// `value` is not a product, or if it has no such factor or more than one.
     fn number_without_unit(&self, value: &tree::Value<'s>) -> Option<(&'s str, &'s str)> {
         let ValueKind::Chain { first, rest } = &value.kind else {
             return None;
@@ -223,8 +223,9 @@ impl<'s> Evaluator<'_, 's> {
     ///
     /// A number derived from `pi`, or of at most pi, is more likely in radians, any other in
     /// degrees. A number above 2 pi is certainly in degrees. If the unit is uncertain, the titles
-    /// also give the angle in the other unit. If parts of the formula suggest different units, the
-    /// fixes are marked as placeholders, so that the author must choose.
+    /// also give the angle in the other unit. If some parts of the expression `value` suggest
+    /// degrees and others radians, the fixes are marked as placeholders, so that the author must
+    /// choose.
     pub fn units(&self, value: &tree::Value<'s>, number: f64) -> [(Unit, Fix); 2] {
         let text = self.sources.text(value.span);
         let is_literal = is_plain_number(value);

@@ -132,9 +132,10 @@ impl<'s> Evaluator<'_, 's> {
     }
 }
 
-/// Returns an example of the missing third coordinate of a vector whose other coordinates are `x`
-/// and `y`: the greater of the two. If the coordinates are the sides of a triangle, a triangle with
-/// these three sides then exists. If both are 0, returns 1, because a zero vector has no direction.
+/// Returns an example for the missing third coordinate of a vector whose other coordinates are `x`
+/// and `y`. The example is the greater of the two numbers, which suits even the sides of a
+/// triangle: any positive sides `x`, `y` and `max(x, y)` form one. If both numbers are 0, it is 1,
+/// because a zero vector has no direction.
 fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
     let (a, b): (f64, f64) = (x.parse().ok()?, y.parse().ok()?);
     Some(match (a > b, a == 0.0 && b == 0.0) {

@@ -201,10 +201,10 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     /// Returns the known name that is nearest to the undefined name `name`, and whether it is a
-    /// safe replacement. Compares with the names that the scene defines. Compares in addition with
-    /// the colours if a colour is wanted (`is_color`), and with the constants otherwise. If nothing
-    /// is found and the wanted type is unknown, compares with all colours. Names whose values have
-    /// another type than `wanted` are left out.
+    /// safe replacement. The candidates are the names that the scene defines, and also the colours
+    /// if a colour is wanted (`is_color`), or else the constants. A candidate whose value does not
+    /// have the type `wanted` is left out. If no candidate is near and the wanted type is unknown,
+    /// all colours are tried.
     fn nearest(
         &self,
         name: &str,
@@ -241,8 +241,8 @@ impl<'s> Evaluator<'_, 's> {
             Some(_) => None,
         });
         let near = near?;
-        // A name such as `lightred`, which is not a CSS colour, is probably not a misspelt
-        // `lightgrey` either, so that colour is not suggested.
+        // A name such as `lightred` is not a CSS colour. The author probably did not mean the
+        // nearest colour either, such as `lightgrey`, so nothing is suggested.
         let is_of_colors = css::color(near).is_some();
         if is_of_colors && near != name.replace('_', "") && is_of_tone(name) {
             return None;

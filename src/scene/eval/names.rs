@@ -27,18 +27,20 @@ pub struct Names<'s> {
     pub(super) defined: HashMap<&'s str, Defined>,
     /// The names of `defined`, in the order of their definitions.
     order: Vec<&'s str>,
-    /// Words of texts that could not be parsed and were reported. They may have been meant as
-    /// names, so their uses are not reported.
+    /// Words in parts of the file that could not be parsed. Each such part was reported, and its
+    /// words may be names that it was meant to define, so these names are not reported as
+    /// undefined.
     pub(super) parts: HashSet<&'s str>,
     /// Every definition of the file with the span of its name, including later ones.
     definitions: HashMap<&'s str, Span>,
-    /// Names of the file's objects. They have no value, but a message can explain that.
+    /// Names of the file's objects. If one of them is used as a value, the report says that an
+    /// object is no value.
     pub(super) objects: HashSet<&'s str>,
     /// Names of the indices of all blocks. An index is the counter of a `for`, such as `i` in
     /// `for i < 8`.
     pub(super) indices: HashSet<&'s str>,
-    /// Number of name comparisons that may still be made. Every search for the known name that is
-    /// most similar to an undefined name is counted.
+    /// Number of comparisons that may still be made between undefined names and known ones, in
+    /// search of the most similar known name.
     budget: ComparisonBudget,
     /// Problems of undefined names. They are kept apart because some of the other problems are
     /// discarded when a value is evaluated again.
@@ -61,8 +63,9 @@ pub(super) struct Reported {
 /// Definition of a name, by a `let` or as the index of a `for`.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::scene) struct Defined {
-    /// Value of the name. `None` if its expression has errors, if the name already has a predefined
-    /// meaning, or if the name is the counter of a `for` whose value is unknown.
+    /// Value of the name. `None` if its expression has errors, or if the name already has a
+    /// predefined meaning. If the name is the counter of a `for`, also `None` if the counter's
+    /// value is unknown.
     pub value: Option<Value>,
     /// Span of the name in its definition.
     pub place: Span,
@@ -111,8 +114,8 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Returns the unit in which the numbers of `value` are meant, as far as its formula shows: a
-    /// formula with `pi`, for example, suggests radians.
+    /// Returns the unit in which the author probably means the numbers of the expression `value`.
+    /// An expression that uses `pi`, for example, suggests radians.
     pub fn origin(&self, value: &tree::Value<'_>) -> UnitOrigin {
         UnitOrigin::of(value, &|name| Some(self.defined.get(name)?.origin))
     }
@@ -182,8 +185,8 @@ impl<'s> Names<'s> {
     }
 
     /// Returns the names that are defined so far, so that they can be compared with an undefined
-    /// name. Subtracts their number from the number of comparisons that may still be made. Returns
-    /// `None` if fewer are left.
+    /// name. Reduces the number of comparisons that may still be made. Returns `None` if fewer are
+    /// left than the comparison with all known names needs.
     pub(super) fn to_compare(&self) -> Option<&[&'s str]> {
         // Approximate number of predefined colours and constants. An undefined name is compared
         // with them too. An estimate is enough, because it only limits the number of searches.
@@ -199,8 +202,8 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Returns the number of name comparisons that may still be made. Every search for the known
-    /// name that is most similar to an undefined name is counted.
+    /// Returns the number of comparisons that may still be made between undefined names and known
+    /// ones, in search of the most similar known name.
     pub fn budget(&self) -> &ComparisonBudget {
         &self.budget
     }

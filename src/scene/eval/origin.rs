@@ -9,7 +9,7 @@ use crate::{
     syntax::tree::{self, Operator, Unit, ValueKind},
 };
 
-/// Unit in which a number without a unit is meant, as far as its formula shows.
+/// Unit in which the author of an expression probably means a number that has no unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnitOrigin {
     /// Unknown: the formula consists of numbers without a unit and without `pi`.

@@ -1,11 +1,10 @@
 //! Suggestions for undefined names.
 //!
-//! In: an undefined name, and the nearest defined one. Out: a suggestion. While it is tried, the
-//! undefined name has the meaning of the defined one.
+//! In: an undefined name, and the nearest defined one. Out: a suggestion.
 //!
 //! The suggested name may cause another error in the value that uses it. To find out, the caller
-//! evaluates the whole value again with the meaning of the suggested name, and then keeps or
-//! withdraws the suggestion.
+//! tries the suggestion: it evaluates the whole value again, with the meaning of the suggested name
+//! in place of the undefined one. The caller then keeps or withdraws the suggestion.
 
 use std::cell::RefCell;
 

@@ -75,7 +75,7 @@ impl<'s> Lowering<'s> {
 
     fn has_errors(&self) -> bool {
         let mut all = self.problems.iter().chain(&self.found);
-        // All problems in `names.problems` are errors, so it suffices that there are any.
+        // `names.problems` contains only errors, no warnings, so their severity is not examined.
         all.any(Diagnostic::is_error)
             || !self.names.problems.borrow().is_empty()
             || !self.sources.file.invalid_utf8().is_empty()

@@ -55,8 +55,7 @@ impl<'s> Lowering<'s> {
                     .at(eye_place, "the eye")
                     .help("move one of them, or give a `direction` instead of `lookat`")
                     .report(&mut self.problems);
-                // The view direction is undefined, so the camera is left out of the scene that an
-                // editor shows.
+                // The view direction is undefined. Without a view, no camera is built.
                 view = None;
             }
             (Some(eye), Some(view), Some(given)) => {
@@ -116,11 +115,11 @@ impl<'s> Lowering<'s> {
         if !(is_parallel || sine < LEAST_SINE) {
             return;
         }
-        // If the view direction is parallel to up, the direction `level_direction(up)` decides what
-        // is at the top of the picture. `across` is the component of this direction that is
-        // perpendicular to up. If the camera looks against up, `across` points to the top of the
-        // picture; otherwise, `-across` does. Only the direction of `up` matters, so it is scaled
-        // to keep its square from overflowing.
+        // Computes `top`, the direction of the picture's top if the camera looks straight along up
+        // or in the opposite direction. `across` is the component of `level_direction(up)` that is
+        // perpendicular to up. `top` is `-across` if the camera looks along up, and `across` if it
+        // looks in the opposite direction. Only the direction of `up` matters, so the vector is
+        // scaled to keep its square from overflowing.
         let up = up / up.abs().max_element();
         let level = level_direction(up);
         let across = level * up.dot(up) - up * level.dot(up);
@@ -308,8 +307,8 @@ impl Lowering<'_> {
                 continue;
             }
             reported = Some(place);
-            // The suggested side is 1 m or the eye's height above the board, if samples can tell
-            // squares of this side apart.
+            // The suggested side of a square is 1 m if samples can tell such squares apart, and
+            // otherwise the eye's height above the board if samples can tell those apart.
             let height = (board.y - camera.eye.y).abs();
             let larger = [1.0, height].into_iter().find(|&square| !is_lost(square));
             let larger = larger.map(numbers::short);

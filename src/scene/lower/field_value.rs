@@ -260,9 +260,10 @@ fn allowed(row: &FieldRow, condition: Condition, value: Value) -> (String, Appli
     (allowed, Applicability::Placeholder)
 }
 
-/// Returns the `rgb` call for a colour that was written as a vector. The channels are assumed to go
-/// from 0 to 1 if none is greater than 1, and otherwise to 255. Returns `None` if a channel is
-/// negative or greater than 255, or if the vector has channels from 0 to 1 that are not literals.
+/// Returns the `rgb` call for a colour that was written as a vector. If a channel is greater than
+/// 1, the channels are assumed to go up to 255, and otherwise up to 1. Returns `None` if a channel
+/// is negative or greater than 255. Channels up to 1 must be multiplied by 255, which is done only
+/// if all of them are literals; otherwise, also returns `None`.
 fn rgb(parts: DVec3, tree: &tree::Value<'_>, text: &str) -> Option<(String, Applicability)> {
     let ValueKind::Tuple(elements) = &tree.kind else {
         return None;

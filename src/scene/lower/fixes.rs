@@ -34,8 +34,8 @@ pub(super) fn one_of_two(name: &str, [first, second]: [Span; 2], sources: &Sourc
     })
 }
 
-/// Returns a fix that removes the text at `span`, of which the file contains an equal copy
-/// elsewhere. The fix is safe unless it also removes a comment.
+/// Returns a fix that removes the text at `span` because an equal text stands elsewhere in the
+/// file. The fix is safe unless it also removes a comment.
 pub(super) fn remove_equal(title: String, span: Span, sources: &Sources) -> Fix {
     let fix = Fix::remove_whole(title, span, sources);
     let mut taken = fix.edits.iter().map(|edit| sources.text(edit.span));
@@ -57,11 +57,11 @@ impl Lowering<'_> {
         Some(Fix::new(title, [edit]).placeholder())
     }
 
-    /// Returns the fixes for two given fields that belong to different alternatives of `choice`, of
-    /// which a block may use only one. There is at most one fix for each of the two fields: it
-    /// keeps the alternative of this field, and removes the given fields of all other alternatives.
-    /// It is omitted if the kept alternative lacks a field that it must have, or if a field that is
-    /// not removed stands between the removed ones.
+    /// Returns the fixes for two given fields that exclude each other, because they belong to
+    /// different alternatives of `choice`. A fix keeps the fields of one alternative and removes
+    /// those of all others. There are at most two fixes, one for each of the two fields. A fix is
+    /// omitted if the kept alternative lacks a field that it must have, or if a field that is not
+    /// removed stands between the removed ones.
     pub(super) fn one_of(
         &self,
         block: &LoweredBlock<'_>,

@@ -43,8 +43,8 @@ impl<'s> Lowering<'s> {
             it.evaluate(&definition.value, None)
         });
         let Some(name) = name else { return };
-        // A definition whose keyword has no bytes was written without `let`, which the parser has
-        // reported.
+        // If the keyword's span is empty, the definition was written without `let`, and the parser
+        // has reported it.
         let reported = definition.keyword.range().is_empty();
         match (predefined(name.text), first) {
             (Some(what), _) => {
@@ -158,7 +158,7 @@ impl<'s> Lowering<'s> {
         }
         let unknown: Vec<_> = left().filter(|field| !is_known(field)).collect();
         // If two unknown words probably mean the same field, it is uncertain which of them is
-        // right. The field is recorded, so that it is not reported as missing either.
+        // right. The field is recorded as given, so that it is not reported as missing.
         let mut tried: Vec<&str> = Vec::new();
         for field in unknown
             .iter()
@@ -273,8 +273,9 @@ impl<'s> Lowering<'s> {
     }
 
     /// Improves the report of a field with a wrong number of colours, such as `color (red, green,
-    /// blue)`. If the number is right for the other one of the fields `color` and `colors`,
-    /// suggests this field. `is_free` says that the block does not have the suggested field yet.
+    /// blue)`. Suggests `colors` instead of `color`, or `color` instead of `colors`, if the number
+    /// is right for the suggested field. `is_free` is true if the block does not have the suggested
+    /// field yet.
     fn other_colors(&mut self, before: usize, field: &tree::Field<'s>, takes: Type, is_free: bool) {
         let is_color = |value: &tree::Value<'s>| match &value.kind {
             ValueKind::Call(call) => call.function.text == "rgb",

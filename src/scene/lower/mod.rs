@@ -1,9 +1,9 @@
 //! Lowers a syntax tree, i.e. converts it to a scene.
 //!
-//! In: the tree of a file, in which the values of `--set` arguments replace those of the file. Out:
-//! the scene, or problems. The items are processed once, in order: each item defines its name,
-//! evaluates its fields or builds its objects. Then image, camera and sampler are built. A problem
-//! of one field never hides a problem of another.
+//! In: the tree of a file, in which `--set` arguments have replaced values. Out: the scene, or
+//! problems. Every item is processed once. A definition gives a value to its name. The fields of a
+//! block are evaluated, and the block of an object is built. Then image, camera and sampler are
+//! built. A problem of one field never hides a problem of another.
 
 mod build;
 mod camera;

@@ -143,14 +143,15 @@ impl<'s> Lowering<'s> {
         self.problems.is_empty() && self.names.problems.borrow().is_empty()
     }
 
-    /// Returns: the parts of the scene that have no errors; all problems; and the defined names.
+    /// Returns the parts of the scene that have no errors, all problems, and the defined names.
     fn finish(mut self) -> (Parts, Vec<Diagnostic>, Names<'s>) {
         let parts = self.build();
         let mut diagnostics = std::mem::take(&mut self.found);
         // Syntax problems within the value of an unknown field are dropped.
         diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
         let mut of_names = Vec::from(self.names.problems.take());
-        // Uses of a name were not always found in the order of the text, so their edits are sorted.
+        // A fix for an undefined name contains an edit for each use of the name. The uses were not
+        // always found in the order of the text, so the edits are sorted.
         for fix in of_names.iter_mut().flat_map(|problem| &mut problem.fixes) {
             sort_by_span(&mut fix.edits, |edit| edit.span);
         }
@@ -161,7 +162,8 @@ impl<'s> Lowering<'s> {
             .iter_mut()
             .flat_map(|problem| &mut problem.fixes);
         fixes.for_each(|fix| fix.make_careful(self.sources));
-        // A `--set` argument that is used in several places is reported once.
+        // A `--set` argument may be used in several places. If its angle lacks a unit, this is
+        // reported only once.
         let mut in_sets: Vec<Span> = Vec::new();
         let is_reported_once = |it: &Diagnostic| it.is("bare_angle");
         diagnostics.retain(|it| match it.labels.first().map(|label| label.span) {

@@ -62,8 +62,8 @@ impl<'s> Lowering<'s> {
         self.names.restore(hidden);
     }
 
-    /// Returns the combinations of the indices' values, concatenated in order: 0 0, 0 1, 1 0, 1 1
-    /// for `for i < 2, j < 2`. Reports a wrong count and then returns `None`.
+    /// Returns the combinations of the indices' values, concatenated in order. For `for i < 2, j <
+    /// 2`, these are 0 0, 0 1, 1 0 and 1 1. Reports a wrong count and then returns `None`.
     ///
     /// Counts that depend on no index are evaluated first. If their product is too large, this is
     /// reported before many combinations are stored, whatever the order of the indices.
@@ -222,7 +222,7 @@ impl<'s> Lowering<'s> {
     }
 
     /// Returns whether every count uses only earlier indices, as in `for i < 8, j < i`. Otherwise
-    /// reports the first count that does not.
+    /// reports the first count that uses its own index or a later one.
     fn are_counted_before(&mut self, repetition: &Repetition<'s>) -> bool {
         for (at, index) in repetition.indices.iter().enumerate() {
             let mut later = repetition.indices.iter().skip(at);
@@ -272,8 +272,8 @@ impl<'s> Lowering<'s> {
     fn unused_index(&mut self, name: Name<'s>, block: &Block<'s>) {
         let behind = Span::new(name.span.source, name.span.end, block.span.end);
         let text = self.sources.text(behind);
-        // A use of the index in other capitals is reported as an undefined name, so the index is
-        // not reported as unused.
+        // If the block contains the index with other capital letters, this word is reported as an
+        // undefined name. The index is not reported as unused as well.
         let mut words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
         if block.open.is_none()
             || has_name(text, name.text)
@@ -362,11 +362,12 @@ impl<'s> Lowering<'s> {
         let with_index: Vec<Span> = with_index
             .filter(|it| self.depends(*it, repetition))
             .collect();
-        // A problem with the first combination of indices often occurs with all others too. Such a
-        // problem gets a label with the indices only if its value depends on one of them.
+        // A problem of the first combination of indices often occurs with all other combinations
+        // too. If such a problem is about a value that depends on no index, it gets no label with
+        // the indices.
         let is_first = values.iter().all(|&value| value == 0);
-        // A fix must not replace a formula that depends on an index by the value for one
-        // combination.
+        // If an expression depends on an index, a fix must not replace it by the value that it has
+        // for one combination.
         let keeps = |edit: &Edit| {
             let mut indices = repetition.indices.iter();
             let written = self.sources.text(edit.span);

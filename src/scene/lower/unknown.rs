@@ -59,9 +59,9 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Reports several unknown words in one problem if they stand for the coordinates of one field,
-    /// such as `x`, `y` and `z` for a centre, or for several fields, such as `p1`, `p2` and `p3`
-    /// for the vertices of a triangle. Returns the spans of these words.
+    /// Reports several unknown words in one problem. The words may stand for the coordinates of one
+    /// field, such as `x`, `y` and `z` for a centre. They may also stand for several fields, such
+    /// as `p1`, `p2` and `p3` for the vertices of a triangle. Returns the spans of these words.
     pub(super) fn parted(
         &mut self,
         fields: &[tree::Field<'s>],

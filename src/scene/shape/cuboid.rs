@@ -75,8 +75,8 @@ impl Cuboid {
         }
     }
 
-    /// Sets the field `name`, `center` or `size`, to `to` by changing the corners. Returns `false`
-    /// and changes nothing if `name` is another field.
+    /// Sets the field `name` of the box, `center` or `size`, to the value `to` by changing the
+    /// corners. Returns `false` and changes nothing if `name` is another field.
     pub(in crate::scene) fn set_center_or_size(&mut self, name: &str, to: DVec3) -> bool {
         let (center, half) = if name == BOX.center.name {
             (to, (self.max - self.min) / 2.0)
@@ -137,7 +137,8 @@ fn empty(block: &LoweredBlock<'_>, min: DVec3, max: DVec3, problems: &mut Proble
     problems.push(match (block.given(BOX.min), block.given(BOX.max)) {
         (Some(low_given), Some(high_given)) => {
             // The fix swaps coordinates so that each coordinate of `max` is the greater one. It is
-            // not offered if two of them are equal, since the box would still have no extent.
+            // not offered if `min` and `max` have an equal coordinate, since the box would still
+            // have no extent along that axis.
             let in_order = min.cmpne(max).all().then(|| {
                 let corners = [(low_given, min.min(max)), (high_given, min.max(max))];
                 let edits = corners.map(|(given, corner)| Edit::new(given.span, exactly(corner)));

@@ -1,4 +1,4 @@
-//! The measures of shapes as JSON.
+//! The fields of shapes as JSON, and the vertices of triangles.
 
 use glam::DVec3;
 use serde_json::{Value as Json, json};

@@ -135,8 +135,8 @@ impl Shape {
         self.bounding_sphere().map(|(center, _)| center)
     }
 
-    /// Returns the least and the greatest coordinates of the shape; `None` if it is infinite.
-    /// `vertices` computes the vertices of a triangle.
+    /// Returns the corners with the least and the greatest coordinates of the shape's bounding box.
+    /// Returns `None` if the shape is infinite. `vertices` computes the vertices of a triangle.
     pub fn bounding_box(
         &self,
         vertices: impl FnOnce(&Triangle) -> [DVec3; 3],
@@ -158,8 +158,9 @@ impl Shape {
         for_each_kind!(self, own => own.bounding_sphere())
     }
 
-    /// Returns the greatest absolute value among the shape's lengths, such as a radius, and the
-    /// coordinates of its points relative to `from`.
+    /// Returns the greatest of the shape's lengths, such as a radius, and of the absolute
+    /// coordinates of its centre or vertices relative to `from`. For a checkerboard, this is its
+    /// vertical distance from `from`.
     pub fn greatest_length(&self, from: DVec3) -> f64 {
         for_each_kind!(self, own => own.greatest_length(from))
     }

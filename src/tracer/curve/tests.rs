@@ -1,5 +1,5 @@
-//! Compares the doubtful area of a conic, i.e. the area that the conic's error may put on its wrong
-//! side, with counts of points.
+//! Compares the doubtful area of a conic with counts of points. The doubtful area is the part of a
+//! pixel in which the conic's error leaves open on which side of the conic a point lies.
 
 use std::cell::RefCell;
 
@@ -8,8 +8,8 @@ use proptest::{prelude::*, test_runner::TestRunner};
 use super::*;
 use crate::reference::tightness::Tightness;
 
-/// Number of rows, and of columns, of the grid of points in a pixel. The points at which a conic's
-/// error makes their side uncertain are counted.
+/// Number of rows, and of columns, of the grid of points in a pixel. The points in the doubtful
+/// area are counted.
 const POINTS: i32 = 300;
 
 /// Tightness of the three bounds whose minimum is [`Conic::doubtful_area`].

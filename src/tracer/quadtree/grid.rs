@@ -21,7 +21,8 @@ const ROOT_MARGIN: f64 = 1.125;
 /// about 150 units long.
 pub(super) const LEVELS: u32 = 24;
 
-/// A rectangle of the view plane in units of the grid; both ends are included.
+/// A rectangle of the view plane in units of the grid. The units `low` and `high` belong to the
+/// rectangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Rectangle {
     pub(super) low: [u32; 2],
@@ -49,8 +50,8 @@ pub struct Nearness(u32);
 pub struct CellGrid {
     least: f64,
     per_unit: f64,
-    /// First grid unit of the camera's window on each axis. No point outside of the window is
-    /// looked up in the quadtree.
+    /// First grid unit of the camera's window on each axis. Points at lower units are outside of
+    /// the window, so they are not looked up in the quadtree.
     low: [u32; 2],
     high: [u32; 2],
 }

@@ -2,15 +2,16 @@
 //! bounds in the view plane.
 //!
 //! All rays share the eye, so that a ray is a point of the view plane and lies in exactly one cell
-//! of each level: its search does not branch. An object is listed in the cells that it overlaps on
-//! the level where cells are about as large as the object. There are at most four such cells, so
-//! that the lists have at most four entries per object, whatever the objects look like. Each list
-//! is sorted by the objects' maximum inverse depth ([`Nearness`]), the greatest first. A ray that
-//! has hit an object stops reading a list at the first entry behind this object.
+//! of each level. The search for a ray therefore does not branch. An object is listed in the cells
+//! that it overlaps on the level where cells are about as large as the object. There are at most
+//! four such cells, so that the lists have at most four entries per object, whatever the objects
+//! look like. Each list is sorted by the objects' maximum inverse depth ([`Nearness`]), the
+//! greatest first. A ray that has hit an object stops reading a list at the first entry behind this
+//! object.
 //!
 //! Cells have coordinates in whole numbers, and the conversion to them is monotone. The conversion
-//! may move a point out of its object's bounds by at most one unit; bounds are therefore widened by
-//! one unit.
+//! can move a point of an object out of the object's bounds by one unit, but not by more. Bounds
+//! are therefore widened by one unit.
 
 mod grid;
 mod point_query;
@@ -53,9 +54,9 @@ impl Quadtree {
     }
 
     /// Returns the objects that rays through the rectangle `patch` of the view plane may hit, in
-    /// file order. `behind` is called with an object that fills the rectangle, and returns the
-    /// rounded inverse depth that the object reaches everywhere; objects entirely behind it are
-    /// left out. Returns `None` if certainly more than `most` objects are found.
+    /// file order. `behind` is called with an object that fills the rectangle. It returns a rounded
+    /// inverse depth that the object has at least in the whole rectangle; objects entirely behind
+    /// this depth are left out. Returns `None` if certainly more than `most` objects are found.
     pub fn within(
         &self,
         patch: &Patch,

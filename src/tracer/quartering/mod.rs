@@ -50,8 +50,8 @@ const ASKED_A_CANDIDATE: f64 = 120.0;
 #[derive(Debug)]
 pub struct Quartering<'a> {
     world: &'a World,
-    /// Mean number of samples per pixel of the picture; infinite for a picture that is computed
-    /// exactly, where no part may be [`Crowded`](PicturePart::Crowded).
+    /// Mean number of samples per pixel of the picture. It is infinite for a picture that is
+    /// computed exactly, so that no part is given up as [`Crowded`](PicturePart::Crowded).
     samples: f64,
 }
 
@@ -157,7 +157,7 @@ struct Cut<'a, 'b, V> {
     quartering: &'a Quartering<'a>,
     /// The part of the picture that is wanted.
     wanted: Area,
-    /// Whether all of the square that is being divided is wanted.
+    /// Whether the square that is being divided lies entirely within `wanted`.
     is_all_wanted: bool,
     visit: &'b mut V,
 }
@@ -213,8 +213,8 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
         }
         let is_worth_more = candidates.len() <= self.quartering.most(area);
         // If there are at most as many candidates as a cell of the quadtree lists, testing all
-        // candidates is no slower than tracing each sample on its own. Such a sample would also
-        // test the objects of a cell.
+        // candidates is no slower than tracing each sample on its own, because a sample that is
+        // traced on its own is tested against the objects of a cell.
         if !is_worth_more && candidates.len() > OBJECTS_A_CELL {
             return self.show(PicturePart::Crowded { area });
         }

@@ -105,9 +105,9 @@ fn what_a_wall_hides_is_not_found() {
     }
 }
 
-/// Checks the objects that `nearby` finds near a square of pixels in a crowd of objects. If only
-/// these objects are tested, each sample point must get the same colour as with a search of the
-/// quadtree. Some pixels must turn out to have a single colour.
+/// Checks that testing only the objects that `nearby` finds gives each sample point the same colour
+/// as a search of the quadtree does. The scene is crowded with objects. Some pixels must turn out
+/// to have a single colour.
 #[test]
 fn of_a_crowd_the_objects_nearby_are_enough() {
     let mut shapes = thousand_spheres(9.0);

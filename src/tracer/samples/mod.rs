@@ -9,7 +9,7 @@
 //! left out. The others are evaluated for all samples in plain arrays, which the compiler
 //! vectorizes. A form is divided by its error bound, so that its sign is certain where its value is
 //! above 1 or below −1. An uncertain sample is traced again on its own, exactly. This module
-//! therefore never changes what is seen; it only finds it faster.
+//! therefore saves time without changing what is seen.
 
 mod pixel;
 mod prepare;
@@ -50,7 +50,7 @@ pub fn prepare(
 }
 
 /// Calls `count` with the palette index of every colour that the samples of a pixel see, and with
-/// the number of samples that see it. It may be called several times for a colour. `x` and `y` are
+/// the number of samples that see it. For one colour, there can be several calls. `x` and `y` are
 /// the samples' offsets from the pixel's centre. The first `samples` entries are used; more entries
 /// pad the length to a multiple of eight.
 pub fn count(

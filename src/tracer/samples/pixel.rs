@@ -81,7 +81,7 @@ pub(super) enum ColorPattern {
     /// the product of the lines' forms is positive, and the second colour if it is negative. If
     /// `odd` is set, the two colours are exchanged.
     Lines { end: usize, odd: bool },
-    /// The squares of a checkerboard. A division finds the square of each sample.
+    /// The squares of a checkerboard. For each sample, a division computes the square that it hits.
     Squares(CheckerForms),
 }
 

@@ -22,13 +22,13 @@ use super::{
 use crate::{area::Area, math::UP};
 
 /// Maximum error bound of a checkerboard's linear forms in a pixel. If a bound is larger, the
-/// pixel's samples are traced one by one. Otherwise, products of the forms' factors with indices of
+/// pixel's samples are traced one by one, because products of the forms' factors with indices of
 /// squares, which are below 2^53, might overflow.
 const MAX_ERROR: f64 = 1e250;
 
 /// Maximum number of lines between squares in a pixel for which the colour of a sample is found
-/// from the sides of the lines on which the sample lies. With more lines, a division finds the
-/// square of each sample. Measured: from 3 to 12, the render time does not change; with division
+/// from the sides of the lines on which the sample lies. With more lines, a division computes which
+/// square a sample hits. Measured: from 3 to 12, the render time does not change; with division
 /// alone, figure 9.9, the picture of the assignment, takes 11 % longer.
 const MAX_LINES: usize = 6;
 
@@ -175,11 +175,10 @@ impl PreparedPixel {
         Ok(met)
     }
 
-    /// Returns the rule by which the colour of a checkerboard is found at the samples of a pixel.
-    /// If the pixel shows only few squares, the colour is found from the signs of linear forms, one
-    /// for each line between squares. If there are many squares, or if they could not be
-    /// determined, a division finds the square of each sample. Fails if an error bound exceeds
-    /// [`MAX_ERROR`].
+    /// Returns how the colour of a checkerboard is found at the samples of a pixel. If the pixel
+    /// shows only few squares, the colour is found from the signs of linear forms, one for each
+    /// line between squares. If there are many squares, or if they could not be determined, a
+    /// division computes which square a sample hits. Fails if an error bound exceeds [`MAX_ERROR`].
     fn pattern(
         &mut self,
         board: &Checkerboard<f64>,
@@ -199,10 +198,10 @@ impl PreparedPixel {
     }
 
     /// Adds the lines between a board's squares to the pixel's lines, except those that certainly
-    /// do not cross the pixel. Returns the rule by which the colours are found from the signs of
-    /// these lines. If there are more than [`MAX_LINES`] lines, adds none, and a division finds the
-    /// square of each sample. `x0` to `x1` and `z0` to `z1` are the ranges of the squares in the
-    /// pixel.
+    /// do not cross the pixel. Returns a pattern that finds a sample's colour from the signs of the
+    /// lines' forms. If there are more than [`MAX_LINES`] lines, adds none, and returns a pattern
+    /// that computes by division which square a sample hits. `x0` to `x1` and `z0` to `z1` are the
+    /// ranges of the squares in the pixel.
     fn lines(
         &mut self,
         squares: &CheckerForms,
@@ -227,8 +226,8 @@ impl PreparedPixel {
                     Side::Both => {
                         self.lines.push(line.line());
                         // `odd` is the parity at points where the forms of all added lines are
-                        // positive. At these points, each added line changes the parity, so it is
-                        // negated.
+                        // positive. At these points, each added line changes the parity, so `odd`
+                        // is negated.
                         odd = !odd;
                     }
                     Side::Unknown => return Err(Hard),

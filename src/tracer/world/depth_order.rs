@@ -1,13 +1,13 @@
-//! The depth order of two crossings, and whether they lie in one surface and are equal.
+//! The depth order of two crossings. Two crossings in one surface are equal.
 //!
 //! In: two crossings of one ray. Out: the order of their inverse depths, or doubt if rounding
 //! errors leave it uncertain.
 //!
 //! If two crossings lie in one surface, their computed depths leave the order uncertain at every
-//! sample point. Only the highest precision would treat them as equal, and objects take long to
-//! prepare in it. Whether two objects lie in one plane is therefore decided from the numbers of the
-//! scene, without rounding. The near and the far plane, which are not given by numbers of an
-//! object, are compared by their linear forms.
+//! sample point. Only the highest precision would treat them as equal, but preparing objects in the
+//! highest precision takes long. Whether two objects lie in one plane is therefore decided from the
+//! numbers of the scene, without rounding. The near and the far plane, which are not given by
+//! numbers of an object, are compared by their linear forms.
 
 use std::cmp::Ordering;
 
@@ -50,13 +50,13 @@ pub(super) fn order_to_clip<T: Real>(
     if order.is_ok() {
         return order;
     }
-    // A surface in one of the two clip planes certainly has another depth than the other clip
-    // plane, unless the two planes are equal. It is therefore enough to test whether the surface
-    // lies in either plane.
+    // A surface in the other clip plane certainly has another depth than `clip`, unless the two
+    // clip planes are equal. To find out whether the surface lies in `clip`, it is therefore enough
+    // to test whether it lies in either clip plane.
     let at = (index, crossing.part);
-    // The numbers of two different planes may agree in their first hundreds of bits. Only the
-    // highest precision distinguishes such planes. It is tried last, because preparing objects in
-    // it takes long.
+    // The numbers of two different planes may agree in their first hundreds of bits, so that only
+    // the highest precision distinguishes the planes. The highest precision is used last, because
+    // preparing objects takes long with it.
     if is_in_clip::<Double>(geometry, at) && is_in_clip::<Big>(geometry, at) {
         return Ok(Ordering::Equal);
     }
@@ -80,8 +80,8 @@ fn is_same_surface(
 }
 
 /// Returns whether two flat parts of objects lie in one plane. The decision compares the numbers of
-/// the scene, without rounding and without preparing forms. If surfaces lie in one plane, every
-/// sample point needs this test.
+/// the scene, without rounding and without preparing forms. It must be fast, because every sample
+/// point needs it if surfaces lie in one plane.
 pub(in crate::tracer) fn is_one_plane(
     geometry: &Geometry,
     (i, a): (usize, SurfacePart),

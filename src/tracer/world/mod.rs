@@ -118,8 +118,8 @@ impl World {
     }
 
     /// Prepares a scene as [`new`](Self::new) does, for [`ray`](super::ray()), which returns all
-    /// crossings of a ray. Rays may go through points of the picture plane at most `reach` pixels
-    /// from the picture's centre in x and y.
+    /// crossings of a ray. Rays must go through points of the picture plane that are at most
+    /// `reach` pixels from the picture's centre in x and y.
     pub fn for_rays(scene: &Scene, reach: DVec2) -> Self {
         Self::build(scene, Faces::All, reach, &cancel::NEVER)
     }
@@ -223,9 +223,9 @@ impl World {
         self.pieces.owner(piece)
     }
 
-    /// Returns the palette index of the colour that is seen at a sample point if only the objects
-    /// `among`, which are in file order, may be seen. The parameters are those of
-    /// [`slot_at`](World::slot_at).
+    /// Returns the palette index of the colour that would be seen at a sample point if the scene
+    /// consisted only of the objects `among`, which are in file order. The other parameters are
+    /// those of [`slot_at`](World::slot_at).
     pub fn slot_among(
         &self,
         x: u32,
@@ -357,7 +357,7 @@ impl World {
         self.with_color(r, nearest)
     }
 
-    /// Adds to the nearest crossing which of the object's two colours the ray sees.
+    /// Completes the nearest crossing: determines which of the object's two colours the ray sees.
     #[inline]
     fn with_color<T: Precision>(
         &self,

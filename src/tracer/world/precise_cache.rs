@@ -11,9 +11,9 @@ use std::{
 use crate::{lock::lock, math::Real, tracer::object::Object};
 
 /// Maximum number of objects that a cache keeps in one precision. With more objects, an object
-/// evicts the one in its slot. Scenes written by hand have fewer. The number is prime, because
-/// indices of objects in rows are often a power of two or of ten apart, and such objects must not
-/// evict each other.
+/// evicts the one in its slot. Scenes written by hand have fewer objects. The number is prime,
+/// because indices of objects in rows are often a power of two or of ten apart, and such objects
+/// must not evict each other.
 pub const CACHE_SLOTS: usize = 4093;
 
 /// A cache of objects in one precision. Each object is prepared when it is first requested, and

@@ -85,8 +85,9 @@ impl<T: Real> SceneFrame<T> {
     pub(super) fn new(basis: &Basis, scene: &Scene, reach: DVec2, slots: usize) -> Self {
         let scene::Camera { near, far, .. } = scene.camera;
         let camera = Camera::new(basis, scene, reach);
-        // A point λr of a ray with the direction r has the depth λZ, where Z is the component ahead
-        // of r. The inverse depth 1/λ of a plane at the depth `depth` is therefore Z/`depth`.
+        // A point λr of a ray with the direction r has the depth λZ, where Z is the forward
+        // component of r. The inverse depth 1/λ of a plane at the depth `depth` is therefore
+        // Z/`depth`.
         let clip = |depth: f64| {
             let zero = Ball::exact(0.0);
             let inverse = Ball::exact(1.0) / camera.length(depth);
