@@ -59,7 +59,13 @@ fn errors_of_forms_are_within_tight_bounds() {
         prop::array::uniform2(-2.0..2.0_f64),
         (0..SIZE, 0..SIZE, prop::array::uniform2(-0.5..0.5_f64)),
     );
-    TestRunner::default()
+    // The errors of double-doubles are mostly far below their bounds, so many cases are needed to
+    // meet larger ones.
+    let config = ProptestConfig {
+        cases: 1024,
+        ..ProptestConfig::default()
+    };
+    TestRunner::new(config)
         .run(
             &cases,
             |(eye, ahead, (fov, roll), [y, square], (column, row, offset))| {
