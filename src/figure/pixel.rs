@@ -42,21 +42,14 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
     let PixelSamples {
         samples: seen,
         color: mean,
-    } = samples(scene, &world, [x, y])?;
+        ..
+    } = samples(&scene.sampler, &world, [x, y])?;
     most(seen.len() as u64)?;
     let exact = Sampler {
         method: Method::Exact,
         ..scene.sampler
     };
-    let exact = samples(
-        &Scene {
-            sampler: exact,
-            ..scene.clone()
-        },
-        &world,
-        [x, y],
-    )?
-    .color;
+    let exact = samples(&exact, &world, [x, y])?.color;
 
     let mut canvas = Canvas::new(2.0 * CORNER.y + SIDE + 26.0);
     let colors = regions(&mut canvas, &world, [x, y]);

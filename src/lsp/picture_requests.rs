@@ -1,6 +1,6 @@
 //! Answers requests about the picture of a document, as docs/protocol.md specifies.
 
-use std::{borrow::Cow, cell::LazyCell};
+use std::{borrow::Cow, cell::LazyCell, num::NonZeroU64};
 
 use glam::DVec2;
 use serde_json::{Value, json};
@@ -13,10 +13,13 @@ use super::{
 use crate::{
     editor::{
         self, Analysis,
-        viewport::{self, Along, Drag, ObjectOverlay, Overlays, ShownObjects, Vanishing},
+        viewport::{
+            self, Along, Drag, Glass, ObjectOverlay, Overlays, SAMPLE_COUNTS, ShownObjects,
+            Vanishing,
+        },
     },
     numbers::{short, short_vector, significant},
-    scene::Object,
+    scene::{Count, Object},
 };
 
 /// Prefix of the method names of those requests that Pinhole adds to the protocol.
@@ -47,6 +50,7 @@ pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
         "overlays" => overlays(params, converter, version),
         "drag" => drag(params, converter, version),
         "samples" => samples(params, version),
+        "glass" => glass(params, version),
         _ => Err(Refusal::unknown(&format!("{NAMESPACE}{about}"))),
     }
 }
@@ -300,18 +304,66 @@ fn drag(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) ->
 }
 
 fn samples(params: &Value, version: &mut SceneVersion) -> Answer {
+    let pixel = pixel(params, version)?;
+    let (scene, world) = version.world(1);
+    let mut sampler = scene.sampler;
+    if let Some(method) = optional::<String>(params, "method")? {
+        let unknown = || Refusal::invalid(format!("`{method}` is no method"));
+        sampler.method = method.parse().map_err(|_| unknown())?;
+    }
+    if let Some(count) = optional::<u64>(params, "count")? {
+        let positive = NonZeroU64::new(count);
+        let refusal = || Refusal::invalid("`count` is a number of samples, at least 1");
+        sampler.count = Count::PerPixel(positive.ok_or_else(refusal)?.get());
+    }
+    let found = viewport::samples(&sampler, world, pixel).map_err(Refusal::failed)?;
+    let samples = found.samples.iter();
+    let (points, colors): (Vec<_>, Vec<_>) = samples
+        .map(|(point, color)| (point.to_array(), color.to_string()))
+        .unzip();
+    let color = found.color.to_string();
+    Ok(json!({ "points": points, "colors": colors, "color": color, "mean": found.mean }))
+}
+
+/// Answers with what a pixel shows, its exact colour, and the errors of all methods there.
+fn glass(params: &Value, version: &mut SceneVersion) -> Answer {
+    let pixel = pixel(params, version)?;
+    let (scene, world) = version.world(1);
+    let Glass {
+        seen,
+        exact,
+        errors,
+    } = viewport::glass(scene, world, pixel);
+    let seen = seen.iter().map(|seen| {
+        let on = match (seen.at, seen.object) {
+            (None, _) => Value::Null,
+            (_, None) => json!("background"),
+            (_, Some(object)) => json!(label(&scene.objects[object])),
+        };
+        let color = seen.color.to_string();
+        json!({ "color": color, "share": seen.share, "label": on, "object": seen.object })
+    });
+    let errors = errors.iter().map(|errors| {
+        let method = errors.method.name();
+        json!({ "method": method, "typical": errors.typical, "own": errors.own })
+    });
+    Ok(json!({
+        "seen": seen.collect::<Vec<_>>(),
+        "color": viewport::color_of(exact.mean).to_string(),
+        "mean": exact.mean,
+        "bound": exact.bound,
+        "counts": SAMPLE_COUNTS,
+        "errors": errors.collect::<Vec<_>>(),
+    }))
+}
+
+fn pixel(params: &Value, version: &SceneVersion) -> Result<[u32; 2], Refusal> {
     let pixel: [u32; 2] = at(params, "/pixel")?;
     let image = version.scene.image;
     if pixel[0] >= image.width || pixel[1] >= image.height {
         return Err(Refusal::invalid("`pixel` is no pixel of the picture"));
     }
-    let (scene, world) = version.world(1);
-    let found = viewport::samples(scene, world, pixel).map_err(Refusal::failed)?;
-    let samples = found.samples.iter();
-    let (points, colors): (Vec<_>, Vec<_>) = samples
-        .map(|(point, color)| (point.to_array(), color.to_string()))
-        .unzip();
-    Ok(json!({ "points": points, "colors": colors, "color": found.color.to_string() }))
+    Ok(pixel)
 }
 
 fn point(params: &Value, name: &str) -> Result<DVec2, Refusal> {

@@ -7,12 +7,14 @@
 //!
 //! `lines` projects lines into the picture. `handles` computes the handles of an object and moves
 //! the object, `camera` moves the camera, and `edits` writes the changed fields into the text.
-//! `drag` combines them. `add` writes new blocks.
+//! `drag` combines them. `add` writes new blocks. `pick` and `glass` look at one point and at one
+//! pixel.
 
 mod add;
 mod camera;
 mod drag;
 mod edits;
+mod glass;
 mod handles;
 mod lines;
 mod overlays;
@@ -26,12 +28,13 @@ use crate::{
 
 pub use add::{Added, add, duplicate};
 pub use drag::{Drag, Dragged, alone, drag};
+pub use glass::{Glass, MethodErrors, SAMPLE_COUNTS, SeenColor, glass, seen};
 pub use handles::Along;
 pub use lines::clip;
 pub use overlays::{
     MOST_OBJECTS, ObjectOverlay, Overlays, ShownObjects, Vanishing, hide, overlays,
 };
-pub use pick::{MOST_SAMPLES, PixelSamples, pick, samples};
+pub use pick::{MOST_SAMPLES, PixelSamples, color_of, pick, samples};
 
 /// Returns for each object the span that an editor selects when the object is clicked in the
 /// picture: its name, or else the keyword of its block.

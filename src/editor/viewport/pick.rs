@@ -5,10 +5,11 @@ use glam::DVec2;
 use crate::{
     area::Area,
     color::Color,
+    film::Encoder,
     math::SimdWidth,
     render::{Control, render_as_asked},
     sampling::{Points, Sampling},
-    scene::Scene,
+    scene::{Sampler, Scene},
     tracer::{Hit, World, ray},
 };
 
@@ -43,6 +44,8 @@ pub struct PixelSamples {
     pub samples: Vec<(DVec2, Color)>,
     /// The pixel's colour, which takes all samples into account.
     pub color: Color,
+    /// The same colour in linear light, before it is rounded.
+    pub mean: [f64; 3],
 }
 
 /// Returns the colour of the pixel in column `x` and row `y`, and its first [`MOST_SAMPLES`]
@@ -51,14 +54,14 @@ pub struct PixelSamples {
 /// # Errors
 ///
 /// Returns a sentence that says why the pixel cannot be rendered.
-pub fn samples(scene: &Scene, world: &World, [x, y]: [u32; 2]) -> Result<PixelSamples, String> {
+pub fn samples(sampler: &Sampler, world: &World, [x, y]: [u32; 2]) -> Result<PixelSamples, String> {
     let (picture, pixel) = (world.picture(), Area::pixel(x, y));
-    let sampling = Sampling::new(&scene.sampler, picture.width, picture.height);
+    let sampling = Sampling::new(sampler, picture.width, picture.height);
     let count = sampling.count(x, y);
     if count > MOST_TRACED {
         return Err(format!("{count} samples of a pixel would take too long"));
     }
-    let rendered = render_as_asked(world, &sampling, pixel, &Control::default());
+    let rendered = render_as_asked::<[f64; 3]>(world, &sampling, pixel, &Control::default());
     let rendered = rendered.map_err(|error| error.to_string())?;
     let mut points = Points::default();
     let shown = 0..count.min(MOST_SAMPLES);
@@ -67,8 +70,15 @@ pub fn samples(scene: &Scene, world: &World, [x, y]: [u32; 2]) -> Result<PixelSa
         let color = world.palette()[world.slot_at(x, y, offset)];
         (offset + 0.5, color)
     };
+    let mean = rendered.film().pixels()[0];
     Ok(PixelSamples {
         samples: points.iter().map(sample).collect(),
-        color: Color::from_bytes(rendered.film().pixel(0, 0)),
+        color: color_of(mean),
+        mean,
     })
+}
+
+/// Returns the colour of the mean light of a pixel.
+pub fn color_of(mean: [f64; 3]) -> Color {
+    Color::from_bytes(Encoder::default().pixel(mean))
 }

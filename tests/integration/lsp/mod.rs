@@ -5,6 +5,7 @@
 pub mod client;
 mod emacs;
 mod frames;
+mod glass;
 pub mod local_client;
 mod neovim;
 mod session;

@@ -1,0 +1,154 @@
+//! Looks at one pixel closely: what it shows, its exact colour, and how far each sampling method is
+//! from it.
+
+use std::cmp::Reverse;
+
+use glam::DVec2;
+
+use super::pick::pick;
+use crate::{
+    area::Area,
+    cancel,
+    color::Color,
+    exact::{ExactPixel, Integrator},
+    math::SimdWidth,
+    sampling::{Points, Sampling},
+    scene::{Count, Method, Sampler, Scene},
+    tracer::World,
+};
+
+/// Numbers of samples for which the errors of all methods are computed. Each is 4 times the one
+/// before, so that a slope of −1/2 on logarithmic scales halves the error at each step.
+pub const SAMPLE_COUNTS: [u64; 5] = [1, 4, 16, 64, 256];
+
+/// Number of seeds over which the errors of a method are averaged. With 32, the root mean square of
+/// independent errors is known to within about an eighth.
+const SEEDS: u64 = 32;
+
+/// Number of rows, and of columns, of points at which it is looked up which object has a colour.
+const ROWS: u32 = 32;
+
+/// A pixel under the magnifying glass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Glass {
+    /// What the pixel shows, the colour with the largest area first.
+    pub seen: Vec<SeenColor>,
+    /// Exact mean colour, in linear light, with its error bound.
+    pub exact: ExactPixel,
+    /// Errors of every method that takes samples.
+    pub errors: Vec<MethodErrors>,
+}
+
+/// A colour that a pixel shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeenColor {
+    /// The colour.
+    pub color: Color,
+    /// Fraction of the pixel's area that has the colour, from 0 to 1.
+    pub share: f64,
+    /// Where in the picture the colour was found, in pixels from the top left corner. `None` if the
+    /// area with the colour is so small that it lies between the points that were tried.
+    pub at: Option<DVec2>,
+    /// Index of the object that is seen at `at`; `None` if it is the background.
+    pub object: Option<usize>,
+}
+
+/// Errors of a pixel's colour by one method, for each number of [`SAMPLE_COUNTS`]. An error is the
+/// root mean square over the three channels, in linear light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MethodErrors {
+    /// The method.
+    pub method: Method,
+    /// Root mean square of the errors with 32 seeds: the scene's own, and those that follow it.
+    pub typical: [f64; SAMPLE_COUNTS.len()],
+    /// Errors with the scene's own seed.
+    pub own: [f64; SAMPLE_COUNTS.len()],
+}
+
+/// Looks at the pixel in column `x` and row `y`. `world` must be that of the scene.
+pub fn glass(scene: &Scene, world: &World, pixel: [u32; 2]) -> Glass {
+    let [x, y] = pixel;
+    let exact = Integrator::new(world).pixels(Area::pixel(x, y), &cancel::NEVER);
+    let exact = exact.and_then(|pixels| pixels.first().copied());
+    let exact = exact.expect("the integrator was not cancelled");
+    let errors = Method::SAMPLED.map(|method| errors(&scene.sampler, method, world, pixel, &exact));
+    Glass {
+        seen: seen(scene, world, pixel),
+        exact,
+        errors: errors.into(),
+    }
+}
+
+/// Returns the colours that a pixel shows, the one with the largest area first.
+pub fn seen(scene: &Scene, world: &World, [x, y]: [u32; 2]) -> Vec<SeenColor> {
+    let offset = |i: u32| (f64::from(i) + 0.5) / f64::from(ROWS) - 0.5;
+    let mut places = vec![None; world.palette().len()];
+    for (i, j) in (0..ROWS).flat_map(|j| (0..ROWS).map(move |i| (i, j))) {
+        let at = DVec2::new(offset(i), offset(j));
+        places[world.slot_at(x, y, at)].get_or_insert(at);
+    }
+    let corner = DVec2::new(f64::from(x), f64::from(y));
+    let mut seen = Vec::new();
+    Integrator::new(world).shares(Area::pixel(x, y), |_, shares| {
+        let shares = shares.iter().filter(|(_, share)| *share > 0.0);
+        seen = shares
+            .map(|&(slot, share)| {
+                let at = places[slot].map(|at| corner + 0.5 + at);
+                let hit = at.and_then(|at| pick(scene, world, at)?.0);
+                SeenColor {
+                    color: world.palette()[slot],
+                    share,
+                    at,
+                    object: hit.map(|hit| hit.object),
+                }
+            })
+            .collect();
+    });
+    seen.sort_by_key(|seen| Reverse(seen.share.to_bits()));
+    seen
+}
+
+/// Computes the errors of a pixel by one method. Only the seed of `sampler` is used.
+fn errors(
+    sampler: &Sampler,
+    method: Method,
+    world: &World,
+    pixel: [u32; 2],
+    exact: &ExactPixel,
+) -> MethodErrors {
+    let mut points = Points::default();
+    let mut error = |count: u64, seed: u64| {
+        let sampler = Sampler {
+            method,
+            count: Count::PerPixel(count),
+            seed: sampler.seed + seed,
+        };
+        let mean = mean(&sampler, world, pixel, &mut points);
+        let squares = [0, 1, 2].map(|i| (mean[i] - exact.mean[i]) * (mean[i] - exact.mean[i]));
+        (squares.iter().sum::<f64>() / 3.0).sqrt()
+    };
+    let all = SAMPLE_COUNTS.map(|count| {
+        let errors: Vec<f64> = (0..SEEDS).map(|seed| error(count, seed)).collect();
+        let squares: f64 = errors.iter().map(|error| error * error).sum();
+        ((squares / SEEDS as f64).sqrt(), errors[0])
+    });
+    MethodErrors {
+        method,
+        typical: all.map(|(typical, _)| typical),
+        own: all.map(|(_, own)| own),
+    }
+}
+
+/// Returns the mean colour of a pixel's samples, in linear light. It is black without samples.
+fn mean(sampler: &Sampler, world: &World, [x, y]: [u32; 2], points: &mut Points) -> [f64; 3] {
+    let picture = world.picture();
+    let sampling = Sampling::new(sampler, picture.width, picture.height);
+    let count = sampling.count(x, y);
+    sampling.place(SimdWidth::Widest, [x, y], count, 0..count, points);
+    let mut sum = [0.0; 3];
+    for offset in points.iter() {
+        let light = world.palette()[world.slot_at(x, y, offset)].to_linear();
+        sum = [0, 1, 2].map(|i| sum[i] + light[i]);
+    }
+    sum.map(|sum| sum / count.max(1) as f64)
+}

@@ -1,0 +1,161 @@
+//! Tests of what is answered about one pixel: its samples by any method, and the magnifying glass.
+
+use pinhole::{
+    film::rmse,
+    scene::{Count, Method},
+};
+use serde_json::{Value, json};
+
+use super::local_client::LocalClient;
+use crate::scenes::{exact, read, sampled};
+
+const SCENE: &str = "image { width 48 height 27 }
+camera { eye (0, 1, 6) lookat (0, 0.8, 0) }
+sphere Ball { center (0, 1, 0) radius 1 color olive }
+box { min (-3, 0, -1) max (-1.5, 1, 0) color orange }
+checkerboard {}
+";
+
+/// Pixels of the scene's picture: at the sphere's edge over the board, at a corner of the box, at
+/// the board alone, at the horizon, and within the sphere.
+const PIXELS: [[u32; 2]; 5] = [[18, 18], [12, 13], [30, 25], [40, 12], [24, 11]];
+
+fn numbers(value: &Value) -> Vec<f64> {
+    serde_json::from_value(value.clone()).expect("a list of numbers")
+}
+
+/// A method and a number of samples in the request have the same effect as in the text.
+#[test]
+fn samples_are_those_of_the_scene_with_that_method_and_count() {
+    let mut client = LocalClient::with(SCENE);
+    for method in Method::SAMPLED.into_iter().chain([Method::Exact]) {
+        for count in [1, 7, 64] {
+            let text = format!("{SCENE}sampler {{ method {method} per_pixel {count} }}");
+            let mut scene = read(SCENE);
+            scene.sampler.method = method;
+            scene.sampler.count = Count::PerPixel(count);
+            let film = sampled(&scene);
+            let mut written = LocalClient::with(&text);
+            for pixel in PIXELS {
+                let asked = json!({ "pixel": pixel, "method": method.name(), "count": count });
+                let found = client.ask("pinhole/samples", asked);
+                let expected = written.ask("pinhole/samples", json!({ "pixel": pixel }));
+                assert_eq!(found, expected, "{method} {count} {pixel:?}");
+                let [x, y] = pixel;
+                assert_eq!(numbers(&found["mean"]), film.row(y)[x as usize]);
+            }
+        }
+    }
+}
+
+/// The glass says what the exact picture has in the pixel, to the last bit, and what `probe` sees.
+#[test]
+fn the_glass_agrees_with_the_exact_picture_and_with_probe() {
+    let scene = read(SCENE);
+    let exact = exact(&scene);
+    let mut client = LocalClient::with(SCENE);
+    for pixel in PIXELS {
+        let [x, y] = pixel;
+        let found = client.ask("pinhole/glass", json!({ "pixel": pixel }));
+        assert_eq!(numbers(&found["mean"]), exact.film.row(y)[x as usize]);
+        let bound = found["bound"].as_f64().expect("a bound");
+        assert_eq!(bound as f32, exact.bounds[(y * 48 + x) as usize]);
+
+        let seen = found["seen"].as_array().expect("a list");
+        let shares: Vec<f64> = seen
+            .iter()
+            .map(|it| it["share"].as_f64().unwrap())
+            .collect();
+        assert!(shares.is_sorted_by(|a, b| a >= b), "{shares:?}");
+        assert!(
+            (shares.iter().sum::<f64>() - 1.0).abs() <= 1e-9,
+            "{shares:?}"
+        );
+        // 128 × 128 samples see the same colours, with the same shares but for the samples of the
+        // rows and columns of cells that an edge crosses.
+        let asked = json!({ "pixel": pixel, "method": "regular", "count": 128 * 128 });
+        let many = client.ask("pinhole/samples", asked);
+        let colors = many["colors"].as_array().expect("a list");
+        for (it, share) in seen.iter().zip(shares) {
+            let count = colors.iter().filter(|color| **color == it["color"]).count();
+            assert!(
+                (count as f64 / 16384.0 - share).abs() <= 4.0 / 128.0,
+                "{it}"
+            );
+        }
+    }
+    // What is seen, by name: at the sphere's edge, and at the horizon.
+    for (pixel, labels) in [
+        ([18, 18], &["Ball", "checkerboard"][..]),
+        ([24, 11], &["Ball"]),
+        ([12, 13], &["box", "checkerboard"]),
+        ([40, 2], &["background"]),
+    ] {
+        let found = client.ask("pinhole/glass", json!({ "pixel": pixel }));
+        let seen = found["seen"].as_array().expect("a list");
+        for label in labels {
+            assert!(
+                seen.iter().any(|it| it["label"] == *label),
+                "{pixel:?}: {found}"
+            );
+        }
+    }
+}
+
+/// The errors of the chart: those of the scene's own seed are those of the picture.
+#[test]
+fn errors_of_the_own_seed_are_those_of_the_picture() {
+    let mut client = LocalClient::with(SCENE);
+    let mut scene = read(SCENE);
+    let exact = exact(&scene).film;
+    let mut answers = PIXELS.map(|pixel| client.ask("pinhole/glass", json!({ "pixel": pixel })));
+    for method in Method::SAMPLED {
+        for count in [1, 4, 16, 64, 256] {
+            (scene.sampler.method, scene.sampler.count) = (method, Count::PerPixel(count));
+            let film = sampled(&scene);
+            for ([x, y], answer) in PIXELS.into_iter().zip(&mut answers) {
+                let one = |film: &pinhole::film::Film| film.row(y)[x as usize];
+                let (a, b) = (one(&film), one(&exact));
+                let squares: f64 = (0..3).map(|i| (a[i] - b[i]) * (a[i] - b[i])).sum();
+                let at = answer["counts"].as_array().unwrap();
+                let at = at.iter().position(|it| *it == count).expect("the count");
+                let errors = answer["errors"].as_array().expect("a list");
+                let errors = errors.iter().find(|it| it["method"] == method.name());
+                let errors = errors.expect("every method");
+                let own = numbers(&errors["own"])[at];
+                // Sums over the samples are added in different orders.
+                assert!(
+                    (own - (squares / 3.0).sqrt()).abs() <= 1e-12,
+                    "{method} {count}"
+                );
+                let typical = numbers(&errors["typical"])[at];
+                assert!(
+                    typical * 32.0_f64.sqrt() >= own * (1.0 - 1e-12),
+                    "{method} {count}"
+                );
+            }
+        }
+    }
+    assert!(rmse(&exact, &exact).unwrap() == 0.0);
+    // In a pixel of one colour, every sample is right.
+    for errors in answers[4]["errors"].as_array().expect("a list") {
+        if errors["method"] != "scatter" {
+            assert_eq!(numbers(&errors["typical"]), [0.0; 5]);
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_asked_is_refused() {
+    let mut client = LocalClient::with(SCENE);
+    for (request, params) in [
+        ("samples", json!({ "pixel": [1, 1], "method": "soboll" })),
+        ("samples", json!({ "pixel": [1, 1], "count": 0 })),
+        ("samples", json!({ "pixel": [1, 1], "count": 1 << 21 })),
+        ("samples", json!({ "pixel": [48, 1] })),
+        ("glass", json!({ "pixel": [1, 27] })),
+        ("glass", json!({})),
+    ] {
+        client.refused(&format!("pinhole/{request}"), params);
+    }
+}
