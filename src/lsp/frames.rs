@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     area::Area,
-    film,
+    film::{self, Film},
     render::{SLICE, Slices, pixel_work},
     sampling::Sampling,
     scene::{Count, Method, Sampler},
@@ -176,15 +176,20 @@ impl Frame {
             return Ok(None);
         }
         let film = self.slices.film();
-        let mut png = Vec::new();
-        film::write_png(film, None, &mut png).map_err(Refusal::failed)?;
         let image = &version.scene.image;
         Ok(Some(json!({
             "version": version.number,
             "width": film.width(),
             "height": film.height(),
             "size": [image.width, image.height],
-            "png": BASE64_STANDARD.encode(png),
+            "png": encoded(film)?,
         })))
     }
+}
+
+/// Encodes a picture as a PNG file, and the file in base64.
+pub fn encoded(film: &Film<[u8; 3]>) -> Result<String, Refusal> {
+    let mut png = Vec::new();
+    film::write_png(film, None, &mut png).map_err(Refusal::failed)?;
+    Ok(BASE64_STANDARD.encode(png))
 }

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::{
     convert::Converter,
+    frames::encoded,
     params::{Answer, Refusal, at, optional},
     scene_version::SceneVersion,
 };
@@ -331,6 +332,7 @@ fn glass(params: &Value, version: &mut SceneVersion) -> Answer {
     let (scene, world) = version.world(1);
     let Glass {
         seen,
+        enlarged,
         exact,
         errors,
     } = viewport::glass(scene, world, pixel);
@@ -348,6 +350,7 @@ fn glass(params: &Value, version: &mut SceneVersion) -> Answer {
         json!({ "method": method, "typical": errors.typical, "own": errors.own })
     });
     Ok(json!({
+        "png": encoded(&enlarged)?,
         "seen": seen.collect::<Vec<_>>(),
         "color": viewport::color_of(exact.mean).to_string(),
         "mean": exact.mean,

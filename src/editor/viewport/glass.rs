@@ -11,6 +11,7 @@ use crate::{
     cancel,
     color::Color,
     exact::{ExactPixel, Integrator},
+    film::Film,
     math::SimdWidth,
     sampling::{Points, Sampling},
     scene::{Count, Method, Sampler, Scene},
@@ -25,14 +26,17 @@ pub const SAMPLE_COUNTS: [u64; 5] = [1, 4, 16, 64, 256];
 /// independent errors is known to within about an eighth.
 const SEEDS: u64 = 32;
 
-/// Number of rows, and of columns, of points at which it is looked up which object has a colour.
-const ROWS: u32 = 32;
+/// Number of rows, and of columns, of points at which the pixel is examined: those of the method
+/// `regular`. Each becomes a pixel of the enlarged picture.
+const ROWS: u32 = 128;
 
 /// A pixel under the magnifying glass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Glass {
     /// What the pixel shows, the colour with the largest area first.
     pub seen: Vec<SeenColor>,
+    /// The pixel, enlarged to 128 × 128 pixels. Each has the colour of its middle.
+    pub enlarged: Film<[u8; 3]>,
     /// Exact mean colour, in linear light, with its error bound.
     pub exact: ExactPixel,
     /// Errors of every method that takes samples.
@@ -47,7 +51,7 @@ pub struct SeenColor {
     /// Fraction of the pixel's area that has the colour, from 0 to 1.
     pub share: f64,
     /// Where in the picture the colour was found, in pixels from the top left corner. `None` if the
-    /// area with the colour is so small that it lies between the points that were tried.
+    /// area with the colour is so small that it lies between the points that are examined.
     pub at: Option<DVec2>,
     /// Index of the object that is seen at `at`; `None` if it is the background.
     pub object: Option<usize>,
@@ -72,37 +76,45 @@ pub fn glass(scene: &Scene, world: &World, pixel: [u32; 2]) -> Glass {
     let exact = exact.and_then(|pixels| pixels.first().copied());
     let exact = exact.expect("the integrator was not cancelled");
     let errors = Method::SAMPLED.map(|method| errors(&scene.sampler, method, world, pixel, &exact));
+    let slots: Vec<usize> = (0..ROWS * ROWS)
+        .map(|at| world.slot_at(x, y, offset(at % ROWS, at / ROWS)))
+        .collect();
+    let colors = slots.iter().map(|&slot| world.palette()[slot].to_bytes());
+    let enlarged = Film::from_pixels(ROWS, ROWS, colors.collect());
     Glass {
-        seen: seen(scene, world, pixel),
+        seen: seen(scene, world, pixel, &slots),
+        enlarged: enlarged.expect("each point is a pixel"),
         exact,
         errors: errors.into(),
     }
 }
 
-/// Returns the colours that a pixel shows, the one with the largest area first.
-pub fn seen(scene: &Scene, world: &World, [x, y]: [u32; 2]) -> Vec<SeenColor> {
-    let offset = |i: u32| (f64::from(i) + 0.5) / f64::from(ROWS) - 0.5;
-    let mut places = vec![None; world.palette().len()];
-    for (i, j) in (0..ROWS).flat_map(|j| (0..ROWS).map(move |i| (i, j))) {
-        let at = DVec2::new(offset(i), offset(j));
-        places[world.slot_at(x, y, at)].get_or_insert(at);
+/// Returns the offset from the pixel's middle of the point in column `i` and row `j`.
+fn offset(i: u32, j: u32) -> DVec2 {
+    (DVec2::new(f64::from(i), f64::from(j)) + 0.5) / f64::from(ROWS) - 0.5
+}
+
+/// Returns the colours that a pixel shows, the one with the largest area first. `slots` has the
+/// palette index of each point, row by row.
+fn seen(scene: &Scene, world: &World, [x, y]: [u32; 2], slots: &[usize]) -> Vec<SeenColor> {
+    let mut points = vec![None; world.palette().len()];
+    for (at, &slot) in (0..).zip(slots) {
+        points[slot].get_or_insert(offset(at % ROWS, at / ROWS));
     }
-    let corner = DVec2::new(f64::from(x), f64::from(y));
+    let middle = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
     let mut seen = Vec::new();
     Integrator::new(world).shares(Area::pixel(x, y), |_, shares| {
         let shares = shares.iter().filter(|(_, share)| *share > 0.0);
-        seen = shares
-            .map(|&(slot, share)| {
-                let at = places[slot].map(|at| corner + 0.5 + at);
-                let hit = at.and_then(|at| pick(scene, world, at)?.0);
-                SeenColor {
-                    color: world.palette()[slot],
-                    share,
-                    at,
-                    object: hit.map(|hit| hit.object),
-                }
-            })
-            .collect();
+        seen.extend(shares.map(|&(slot, share)| {
+            let at = points[slot].map(|offset| middle + offset);
+            let hit = at.and_then(|at| pick(scene, world, at)?.0);
+            SeenColor {
+                color: world.palette()[slot],
+                share,
+                at,
+                object: hit.map(|hit| hit.object),
+            }
+        }));
     });
     seen.sort_by_key(|seen| Reverse(seen.share.to_bits()));
     seen

@@ -28,7 +28,7 @@ use crate::{
 
 pub use add::{Added, add, duplicate};
 pub use drag::{Drag, Dragged, alone, drag};
-pub use glass::{Glass, MethodErrors, SAMPLE_COUNTS, SeenColor, glass, seen};
+pub use glass::{Glass, MethodErrors, SAMPLE_COUNTS, SeenColor, glass};
 pub use handles::Along;
 pub use lines::clip;
 pub use overlays::{
