@@ -30,9 +30,9 @@ fn independently_known_pixels_lie_within_the_bound() {
 
 sampled_and_exhaustive!(extreme_lenses_do_not_hang);
 
-/// The cameras have extreme numbers, for which summing over the lines between the board's squares
-/// would take practically forever. The pixels must be computed quickly, even if their error bounds
-/// become large.
+/// Renders checkerboards through cameras with extreme numbers. In some pixels, a sum over all
+/// visible edges of the squares would take practically forever. The pixels must be computed
+/// quickly, even if their error bounds become large.
 fn extreme_lenses_do_not_hang(effort: Effort) {
     for text in effort.of([
         "camera { eye (-24.8, 13.6, -14.3) direction (-0.6542553237278188, 0, -0.5082900613062609) d 1e80 }
