@@ -105,7 +105,7 @@ const OFFERED: &[Typed] = &[
 fn neovim_completes_while_typing() {
     let version = Command::new("nvim").arg("--version").output();
     let version = String::from_utf8(version.expect("Neovim is on the path").stdout).expect("text");
-    // The module `vim.lsp.completion` exists since Neovim 0.11.
+    // Neovim has the module `vim.lsp.completion` from version 0.11 on.
     let is_new = !["v0.7.", "v0.8.", "v0.9.", "v0.10."]
         .iter()
         .any(|old| version.contains(old));
