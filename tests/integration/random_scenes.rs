@@ -25,7 +25,7 @@ use crate::{
 /// Generator of the texts of random objects. The objects often have points in common.
 struct Text<'r> {
     random: &'r mut Random,
-    /// Points of the objects so far: vertices, centres, and points on surfaces.
+    /// Points of all objects written so far: vertices, centres, and points on surfaces.
     points: Vec<DVec3>,
     /// On average, one in `wild` numbers may have any magnitude; none if `wild` is 0.
     wild: u64,

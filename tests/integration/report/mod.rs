@@ -55,15 +55,16 @@ fn a_report_prints_a_table_and_one_recommendation() {
         .map(|method| row(method.name()))
         .into_iter()
         .partition(|row| row[1] == "bends");
-    // With few samples, `scatter` leaves pixels empty. The line through its measured points then
-    // bends, so no slope is given for it.
+    // `scatter` leaves pixels empty if there are few samples. Its points in the logarithmic chart
+    // of the error over the number of samples are then not near a straight line, so no slope is
+    // given.
     assert!(bent.iter().all(|row| row[2..4] == ["–", "–"]), "{text}");
     assert!(bent.iter().any(|row| row[0] == "scatter"), "{text}");
     assert!(rows.len() >= 5 && text.contains("\nbends: "), "{text}");
     for row in rows {
-        // Words in a row are cells, so the row has twelve. The third cell, `±`, precedes the error
-        // of the slope. The seventh, `×`, follows the factor by which the number of samples must
-        // grow for a tenth of the error.
+        // Rows are split at white space, so the signs `±` and `×` are two of the twelve words. `±`
+        // precedes the error of the slope. `×` follows the factor by which the number of samples
+        // must grow for a tenth of the error.
         assert_eq!((row.len(), row[2], row[6]), (12, "±", "×"), "{row:?}");
         // The slope is negative. The measured samples are too few for an error of 1/256, so `~`
         // marks the needed number of samples and the time as extrapolated.
