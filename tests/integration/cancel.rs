@@ -1,5 +1,5 @@
-//! Tests of cancellation. Each function that reads a scene ends soon after it is cancelled, even if
-//! the text is long. So does the preparation of the tracer for a scene with many objects.
+//! Tests of cancellation. Reading a scene ends soon after it is cancelled, even if the text is
+//! long. The preparation of the tracer also ends soon, even if the scene has many objects.
 
 use std::{
     fmt::Write,

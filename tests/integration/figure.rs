@@ -180,7 +180,7 @@ sphere for i < 100 { center (i / 20 - 2.5, 3, 0) radius 0.1 } triangle Sail { ce
     ] {
         assert!(texts.iter().any(|it| it == text), "{text}: {texts:?}");
     }
-    // The sail is drawn twice: in space, and on the window.
+    // The triangle `Sail` is drawn twice: in space, and as it appears in the picture.
     assert_eq!(figure.matches("fill:#ff0000").count(), 2);
 }
 

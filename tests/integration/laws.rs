@@ -178,9 +178,9 @@ fn quarter_turns_about_y_swap_the_boards_colours() {
         // sum of the indices then changes between even and odd, so the two colours are swapped.
         let turn = |v: DVec3| (0..turns).fold(v, |v, _| dvec3(v.z, v.y, -v.x));
         let mut after = mapped(&world, turn, turn, 1.0);
-        // If the normal of a triangle is vertical, its base is parallel to the x axis, whatever the
-        // direction of the normal is. A turn of the normal does not turn such a triangle, so its
-        // spin is changed instead.
+        // If the normal of a triangle is vertical, the base is by definition parallel to the x
+        // axis. A turn about y does not change such a normal, so the triangle's spin is changed
+        // instead.
         for triangle in shapes(&mut after).filter_map(centered) {
             if triangle.normal.xz() == DVec2::ZERO {
                 let degrees = 90.0 * f64::from(turns);

@@ -252,8 +252,8 @@ fn assert_parts_agree(scene: &Scene, random: &mut Random, text: &str) -> Rendere
     picture
 }
 
-/// Asserts that the area `part` of the picture `one` has the same bits as the picture `crop`, both
-/// in its pixels and in their error bounds.
+/// Asserts that the picture `crop` has the same bits as the area `part` of the picture `one`, both
+/// in its pixels and in its error bounds.
 #[track_caller]
 fn assert_same_bits(one: &Rendered, part: Area, crop: &Rendered, what: &str) {
     let numbers = |picture: &Rendered, x, y| {

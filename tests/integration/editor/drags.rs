@@ -45,8 +45,8 @@ fn any_scene() -> impl Strategy<Value = String> {
     })
 }
 
-/// Generates a point in, near, or very far from the picture. Its coordinates are in units of the
-/// picture's width and height.
+/// Generates a point: inside the picture, slightly outside of it, or very far away. Its coordinates
+/// are in units of the picture's width and height.
 fn any_point() -> impl Strategy<Value = (f64, f64)> {
     let part = || prop_oneof![8 => -0.5..1.5, 1 => Just(1e300), 1 => Just(-1e12)];
     (part(), part())

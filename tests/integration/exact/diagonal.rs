@@ -10,7 +10,7 @@ use super::*;
 /// The view plane distance `d` is so tiny that nearly all rays of a picture lie in one vertical
 /// plane. This plane meets the board in a diagonal of its squares. In the first two rows, all
 /// squares on this diagonal are black. In the other rows, the expected values are sums of millions
-/// of terms, computed with 40 digits for a `d` of 0.
+/// of terms. They were computed with 40 digits, as if `d` were 0.
 #[test]
 fn independently_known_pixels_lie_within_the_bound() {
     for [image, camera, board, x, y, truth, off] in rows("

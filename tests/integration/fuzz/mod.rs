@@ -23,8 +23,9 @@ use std::{
 
 use crate::{diagnostics::fixtures, format::all_scenes, random::Random};
 
-/// Maximum time for an input; a longer time counts as an endless loop. An input takes milliseconds,
-/// but a busy machine may pause for seconds. A longer limit would only delay the message.
+/// Maximum time for an input. If a test takes longer, it is regarded as an endless loop. An input
+/// takes milliseconds, but a busy machine may pause for seconds. A longer limit would only delay
+/// the message.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Calls `run` and returns its result. If it takes longer than [`PATIENCE`], prints the text of

@@ -80,7 +80,8 @@ const ASKED: &[Typed] = &[
 /// Completions that Neovim offers while the user types, as rows of [`Typed`]. They are tested only
 /// with Neovim 0.11 or later and the configuration that the documentation for editors gives.
 const OFFERED: &[Typed] = &[
-    // While a word is typed, nothing is inserted before the user chooses a completion.
+    // In the next row, the menu is open, but the user chooses no completion. So nothing is
+    // inserted.
     ["$0\ncamera {}", "s menu p h", "sph"],
     [
         "$0\ncamera {}",

@@ -171,8 +171,8 @@ fn the_inner_edges_of_a_box_are_edges_and_no_board() {
     let faces = shares("colors (tan, wheat, peru) }");
     assert!(faces[0] > plain[0], "{faces:?} {plain:?}");
     assert_eq!([plain[1], faces[1]], [0.0; 2]);
-    // A board behind the box must not reduce the number of edge pixels: the edges between the box's
-    // faces are not attributed to the board.
+    // Adds a board behind the box. The edges between the box's faces must not be attributed to the
+    // board, so the number of edge pixels must not fall.
     let on_board = shares("colors (tan, wheat, peru) } checkerboard {}");
     assert!(on_board[0] >= faces[0] && on_board[1] > 0.0, "{on_board:?}");
 }

@@ -37,8 +37,8 @@ pub fn floor() -> Shape {
     scenes::board(0.0, 1.0)
 }
 
-/// Returns whether the camera does not look along its up vector. If it does, the coordinate axes
-/// determine its orientation instead.
+/// Returns whether the camera's up vector determines its orientation. If the camera looks along
+/// this vector, the coordinate axes do so instead.
 pub fn is_upright(scene: &Scene) -> bool {
     let Camera { eye, view, up, .. } = scene.camera;
     let direction = match view {
