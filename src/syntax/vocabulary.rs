@@ -126,7 +126,7 @@ impl<'s> Vocabulary<'s> {
 
     /// Returns whether a field that follows the grammar was perhaps meant otherwise. This is the
     /// case if the block `kind` has no such field, if the value is the name of another field, or if
-    /// the field requires the name of a method and its value is not a name.
+    /// the field requires the name of a sampling method and its value is not a name.
     pub fn is_doubtful(&self, kind: &str, field: &Field<'_>) -> bool {
         let row = schema::block_or_nearest(kind);
         let takes = row.and_then(|row| Some(row.field(field.name.text)?.takes));

@@ -189,8 +189,8 @@ impl<'s> Recovery<'_, 's> {
             let end = start + kept.len().max(1);
             let sign = if line.starts_with(['#', '%']) { 1 } else { 2 };
             let place = Span::new(self.id, start, start + sign);
-            // The fix would write `//` for the sign. This comment would then include the `}`, so
-            // there is no fix.
+            // If a `}` at the end of the line is not part of the comment, there is no fix: with
+            // `//` in place of the `#`, the comment would include that `}`.
             if kept.len() < line.len() {
                 let words = [self.written(place), ""];
                 self.report(&say::COMMENT_SIGN, place, &words, None);

@@ -268,8 +268,8 @@ impl<'s> Recovery<'_, 's> {
         self.items.push(Item::Bad(start.to(self.behind())));
     }
 
-    /// Skips to the next item at the start of a line. Stops earlier after a block or a `}`,
-    /// whichever comes first.
+    /// Skips to the next line that starts an item or a statement of another language. Stops before
+    /// that line if a block or a `}` ends earlier: directly after the first one.
     fn skip_lines(&mut self) {
         while self.kind(0) != TokenKind::End {
             if self.is_on_new_line(0) {
@@ -315,8 +315,8 @@ impl<'s> Recovery<'_, 's> {
         while self.is(0, "}") {
             all = all.to(self.bump());
         }
-        // The fix is certain only if the next token starts a line or an item. Otherwise, another
-        // token than the `}` may have been meant.
+        // The fix is certain only if the next token starts a line or an item. Otherwise, the `}`
+        // may be a typing error for another character.
         let is_before_item = self.is_on_new_line(0) || self.is_head(0) || self.is(0, "let");
         // If a block without its `{` was reported shortly before, the `}` may close that block, so
         // there is no fix.

@@ -98,8 +98,9 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Returns whether a call of another language's function starts here. Such a call is a value
-    /// even on a new line.
+    /// Returns whether the next token starts a call of another language's function, such as
+    /// `vec3(1, 2, 3)`. Even on a new line, such a call is the value of the field or definition
+    /// before it, rather than the start of a field or an item.
     pub(super) fn is_foreign_call(&mut self) -> bool {
         self.words.is_foreign_function(self.word(0)) && self.is(1, "(")
     }
