@@ -12,7 +12,8 @@ pub type LineColumn = (u32, u32);
 pub struct Document {
     /// Version number that the client has given to the text.
     pub version: i32,
-    /// Source files of the scene: only this text, because an editor passes no `--set` arguments.
+    /// The scene file, which is this text, and the command line's `--set` arguments, of which an
+    /// editor has none.
     pub sources: Sources,
     encoding: Encoding,
 }
