@@ -260,9 +260,9 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
     }
 
     /// Reads the file's content, and returns it with the time, length and identity that the file
-    /// had before. If the file is missing or empty, reads it again until it has content, but gives
-    /// up if no event arrives for [`ABSENCE`], or after [`LONGEST_ABSENCE`]. The very first reading
-    /// is not repeated.
+    /// had before. If the file is missing or empty, reads it again until it has content. Returns
+    /// the last result, even without content, if no event arrives for [`ABSENCE`], or after
+    /// [`LONGEST_ABSENCE`]. The very first reading is not repeated.
     fn read_when_there(&self) -> (Option<Stamp>, io::Result<Vec<u8>>) {
         let start = Instant::now();
         let mut end = start + ABSENCE;

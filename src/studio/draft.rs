@@ -20,7 +20,7 @@ use crate::files;
 /// A function that reads a file up to the maximum length of a scene.
 pub type Read = fn(&Path) -> io::Result<Vec<u8>>;
 
-/// Time since its last change after which the file with the drafts of a scene is removed: 30 days.
+/// Time after which the file with the drafts of a scene is removed if it does not change: 30 days.
 /// After a shorter time, drafts could be lost too early. After a longer one, many forgotten texts
 /// would be stored.
 const LIFETIME: Duration = Duration::from_secs(30 * 24 * 60 * 60);

@@ -83,9 +83,9 @@ pub fn changes(block: &Block<'_>, current: FieldOwner, ideal: FieldOwner) -> Vec
 /// of a box changes, its `center` moves by half as much in either direction (±1/2).
 const RATIOS: [f64; 3] = [1.0, 0.5, -0.5];
 
-/// Tolerance for the equality of two changes, relative to the largest change on the axis. It must
-/// exceed rounding errors, which are about 1e-16, and be far below the smallest of [`RATIOS`], 1/2.
-/// Any value in between works.
+/// Tolerance with which the ratio of two changes is compared with [`RATIOS`], relative to the
+/// larger change. It must exceed rounding errors, which are about 1e-16, and be far below the
+/// smallest of these ratios, 1/2. Any value in between works.
 const SAME: f64 = 1e-6;
 
 /// The way in which the numbers that a drag changes are rounded.
