@@ -12,8 +12,8 @@ pub type LineColumn = (u32, u32);
 pub struct Document {
     /// Version number that the client has given to the text.
     pub version: i32,
-    /// The scene file, which is this text, and the command line's `--set` arguments, of which an
-    /// editor has none.
+    /// Source texts of the scene. The scene file is this text. There are no `--set` arguments,
+    /// since only the command line passes them.
     pub sources: Sources,
     encoding: Encoding,
 }

@@ -219,9 +219,9 @@ impl Server {
         Some(response(id, answer))
     }
 
-    /// Moves the scene of a text that has changed to the field `last`, and drops the text's frames.
-    /// Returns error responses to the requests for these frames. Does nothing if there is no scene,
-    /// for example because the text had errors.
+    /// Moves the scene of a text from the field `scenes` to the field `last`, because the text has
+    /// changed, and drops the text's frames. Returns error responses to the requests for these
+    /// frames. Does nothing if there is no scene, for example because the text had errors.
     fn outdate(&mut self, uri: &Uri) -> Vec<Message> {
         let Some(version @ Some(_)) = self.scenes.remove(uri) else {
             // There is no scene if the previous version of the text had errors, or if no picture of

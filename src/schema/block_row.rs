@@ -48,8 +48,8 @@ impl BlockRow {
         self.nameless.iter().find(fits).copied().unwrap_or_default()
     }
 
-    /// Returns the [`Choice`] that a field belongs to: the alternative ways to express the same
-    /// thing. Returns `None` if the field belongs to no choice.
+    /// Returns the [`Choice`] that a field belongs to, such as the choice between the camera's
+    /// fields `lookat` and `direction`. Returns `None` if the field belongs to no choice.
     fn choice(&self, field: &str) -> Option<&'static Choice> {
         let holds = |choice: &&Choice| choice.ways.iter().any(|way| way.contains(&field));
         self.choices.iter().find(holds)

@@ -206,9 +206,9 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 Rule::block => Item::Block(self.block(pair)),
                 _ => continue,
             };
-            // If `let a = 2 pi` is followed by `sphere {`, pest reads `pi sphere {` as a block of
-            // the kind `pi` with the name `sphere`. The actual kind is `sphere`, so reading stops
-            // before `pi`, and recovery reports the mistake.
+            // In `let a = 2 pi`, followed by `sphere {`, pest reads `pi sphere {` as a block of the
+            // kind `pi` with the name `sphere`. The actual kind is `sphere`, so reading stops
+            // before `pi`, and recovery reports that `2 pi` lacks its operator.
             if let Item::Block(block) = &item
                 && let (Some(kind), Some(name)) = (block.kind, block.name)
                 && self.words.is_kind(name.text)

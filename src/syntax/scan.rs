@@ -176,8 +176,8 @@ impl Scan {
                 let edits = places.iter().map(|place| Edit::new(*place, text));
                 Fix::new(title, edits)
             };
-            // Two words may join if a character of zero width between them is removed, so that
-            // removal is not safe.
+            // If a character of zero width is removed from between two words, they become one word.
+            // Such a removal is not safe.
             let has_width = sort.chars().all(char::is_whitespace);
             let joins = |place: &Span| !Edit::remove_in(*place, text).text.is_empty();
             let is_safe = has_width || !places.iter().any(joins);

@@ -1,9 +1,9 @@
 //! Computes the limits of a slider for a number in the text.
 //!
 //! If a comment after the definition gives a range, that range is used. Otherwise, the slider
-//! extends some steps to both sides of the number, within the values that are allowed in the fields
-//! that use the number. If an end of the slider would cause a new error in the text, the end is
-//! moved towards the number.
+//! extends some steps to both sides of the number. It does not extend beyond the values that are
+//! allowed for a field, if the number is the value of that field. If an end of the slider would
+//! cause a new error in the text, the end is moved towards the number.
 
 mod comment;
 mod literal;

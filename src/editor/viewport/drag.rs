@@ -46,7 +46,7 @@ pub struct Drag<'a> {
     pub along: Option<Along>,
     /// Maximum distance in the picture, in pixels, between neighbouring positions of the handle on
     /// a grid. `None` if the drag does not snap to a grid. The changed numbers become multiples of
-    /// the largest power of ten with which this distance is not exceeded.
+    /// a power of ten, which is as large as this distance permits.
     pub step: Option<f64>,
 }
 
@@ -415,6 +415,7 @@ impl DragView<'_> {
     /// of the picture are ignored, except the dragged one.
     fn agree(&self, ideal: FieldOwner, found: FieldOwner, tolerance: f64) -> bool {
         // A length that was rounded to few digits may have become 0, which the language forbids.
+        // Such a result is rejected even if it looks alike.
         if ideal.is_possible() && !found.is_possible() {
             return false;
         }

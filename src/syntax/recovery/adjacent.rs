@@ -272,8 +272,8 @@ fn are_thousands(text: &str) -> bool {
         && text.bytes().all(|it| it.is_ascii_digit() || it == b' ')
 }
 
-/// Returns whether a surplus `)` after `value` can be removed safely: wherever its `(` is inserted
-/// in `value`, the result stays the same.
+/// Returns whether a surplus `)` after `value` can be removed safely. This is so if `value` stays
+/// the same wherever the missing `(` may belong.
 pub(super) fn is_same_in_parentheses(value: &Value<'_>) -> bool {
     match &value.kind {
         ValueKind::Chain { first, rest } => {

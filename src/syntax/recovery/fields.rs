@@ -58,9 +58,9 @@ impl<'s> Recovery<'_, 's> {
                     self.report(&say::NESTED_BRACES, span, &["braces within a block"], None);
                 }
                 name if self.is_head(0) && !(self.is(1, "{") && self.is_field_name(name)) => {
-                    // Fields that the outer block lacks may stand in the inner one. A block with
-                    // bad text gets no report of missing fields, so the block's keyword is recorded
-                    // as bad text.
+                    // The inner block may contain fields that the outer block lacks, so no field of
+                    // the outer block is reported as missing. This is achieved by recording the
+                    // outer block's keyword as bad text.
                     block.bad.push(block.keyword());
                     had_braces = true;
                     self.nested_block();

@@ -69,8 +69,8 @@ impl<'s> Recovery<'_, 's> {
         while !(self.is_on_new_line(0) || self.is(0, "{") || self.is(0, "}")) {
             self.bump();
         }
-        // The statement may define names. Names in an item that is marked as `Bad` are not reported
-        // as undefined later.
+        // The statement may define names, so it becomes a `Bad` item: names in such an item are not
+        // reported as undefined later.
         self.items.push(Item::Bad(span.to(self.behind())));
         if self.is(0, "{") {
             self.bump();

@@ -345,8 +345,8 @@ impl<'s> Recovery<'_, 's> {
             let edits = before.map(|e| Edit::insert(self.id, e.value.span.end, ","));
             Fix::new(format!("write `{l}, {r}`"), edits)
         });
-        // Two values without white space between them, as in `min1.6`, were probably one word, so
-        // the fix is not safe.
+        // Two values without white space between them, as in `min1.6`, may have been meant as
+        // something else, so the fix that writes a comma is not safe.
         let are_apart = left.span.end < right.span.start;
         self.report(
             &say::MISSING_COMMA.safe_if(are_apart),

@@ -359,7 +359,7 @@ impl<'w, 's> Recovery<'w, 's> {
 
     /// Returns whether the next token ends every unfinished construct before it. Such a token is a
     /// brace, `let`, the name of a field, the start of a block, or the first token of a line.
-    /// Within a block, the first token of a line counts only if it is a name.
+    /// Within a block, the first token of a line is such a token only if it is a name.
     fn is_boundary(&mut self) -> bool {
         let word = self.word(0);
         matches!(word, "" | "let" | "{" | "}")
