@@ -56,8 +56,8 @@ impl Frames {
         let new = Frame::new(id, uri, params, version)?;
         let what = |frame: &Frame| (frame.version, frame.scale, frame.samples);
         let mut of_text = self.0.iter_mut().filter(|frame| frame.uri == new.uri);
-        // If an equal frame is in the queue, perhaps rendered in part, its rendering continues for
-        // the new request.
+        // The queue contains the same frame already, and a part of it may be rendered. This frame
+        // then answers the new request.
         if let Some(known) = of_text.find(|frame| what(frame) == what(&new)) {
             return Ok(vec![mem::replace(&mut known.id, new.id)]);
         }

@@ -14,8 +14,8 @@ impl BlockRow {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// Returns the fields that people may mean by `written`. Such a word is no field's name, and
-    /// people use it by mistake for each of several fields.
+    /// Returns the fields that people may mean by the word `written`. It is not the name of a
+    /// field, but people use it by mistake for each of these fields.
     pub fn fields_perhaps(&self, written: &str) -> impl Iterator<Item = &'static FieldRow> {
         let fields = self.fields.iter();
         fields.filter(move |field| is_among(written, field.perhaps))

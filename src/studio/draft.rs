@@ -64,7 +64,7 @@ pub struct Drafts(Option<PathBuf>);
 
 impl Drafts {
     /// Returns the location of the drafts of the scene at `path`. For a new scene, `path` is the
-    /// folder in which it would be saved. Also removes the drafts of all scenes that are too old.
+    /// folder in which it would be saved. Also removes old drafts, of this and all other scenes.
     pub fn of(path: &Path) -> Self {
         let place = || {
             let folder = files::kept_folder("drafts")?;

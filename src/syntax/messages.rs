@@ -87,8 +87,8 @@ pub fn statement(word: &str) -> Option<[&'static str; 2]> {
     STATEMENTS.iter().find(is_one).map(|row| [row[1], row[2]])
 }
 
-/// Addition to the help of [`FOREIGN_FILE`] for a file of a program with left-handed coordinates,
-/// whose z axis points away from the viewer.
+/// Sentence that is added to the help of [`FOREIGN_FILE`] if the program that made the file uses
+/// left-handed coordinates, i.e. if the z axis points away from the viewer.
 const LEFT_HANDED: &str = "; turn the sign of every z (`pinhole explain left_handed`)";
 
 /// Patterns that recognize files of other programs. A file matches a row if it begins as the row

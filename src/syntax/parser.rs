@@ -59,7 +59,7 @@ pub const STACK_BYTES: usize = 64 << 20;
 /// Minimum length, in bytes, of a value that is parsed on a thread with a stack of its own. Shorter
 /// values are parsed on the caller's stack: each nesting level needs at least one byte of text, so
 /// they have fewer than 32 levels. With a much larger minimum, a value could overflow a small
-/// stack. With a smaller one, a thread would be started for more of the many short values.
+/// stack. With a smaller one, more threads would be started.
 const SHORT_VALUE_BYTES: usize = 32;
 
 /// Minimum number of bytes that pest, the generated parser, reads at a time. The actual number is

@@ -198,7 +198,7 @@ impl Scan {
             }
             if self.odd_spaces.len() == MOST_PROBLEMS {
                 // If the maximum number of places is recorded, the text may contain more. A fix of
-                // only the recorded places would be incomplete.
+                // only the recorded places would be incomplete, so no fix is offered.
                 found.fixes.clear();
             }
             problems.push(found);

@@ -118,8 +118,8 @@ impl<'s> Vocabulary<'s> {
         name == "pi" || self.lets().get(name).copied().unwrap_or(false)
     }
 
-    /// Returns whether a name is a function of another language that makes a vector or a colour. A
-    /// name that the text defines is not.
+    /// Returns whether a name is a function of another language that makes a vector or a colour.
+    /// Returns `false` for a name that the text defines.
     pub fn is_foreign_function(&self, name: &str) -> bool {
         FOREIGN_FUNCTIONS.split(' ').any(|word| word == name) && !self.is_let(name)
     }

@@ -190,7 +190,8 @@ impl<'s> Recovery<'_, 's> {
             let sign = if line.starts_with(['#', '%']) { 1 } else { 2 };
             let place = Span::new(self.id, start, start + sign);
             // If a `}` at the end of the line is not part of the comment, there is no fix: with
-            // `//` in place of the `#`, the comment would include that `}`.
+            // `//` in place of the characters that start the comment, the comment would include
+            // that `}`.
             if kept.len() < line.len() {
                 let words = [self.written(place), ""];
                 self.report(&say::COMMENT_SIGN, place, &words, None);
