@@ -97,8 +97,8 @@ impl Verdict {
         }
     }
 
-    /// Adds an obvious fact before the mistakes or guesses. Unless the verdict is unknown, it
-    /// becomes wrong.
+    /// Adds an obvious fact before the mistakes or guesses. The verdict's kind becomes
+    /// [`Kind::Wrong`], unless it is [`Kind::Unknown`].
     pub fn with_fact(mut self, fact: NamedMistake) -> Self {
         match self.kind {
             Kind::Unknown => self.guesses.insert(0, fact),

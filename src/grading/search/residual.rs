@@ -54,8 +54,8 @@ impl Judge<'_> {
     /// shows another one, and edges lie in their places and are as sharp as they should be.
     ///
     /// If the prediction is exact, the grid `middle` is tested first, because this is faster than
-    /// testing single pixels. A wrong cell contains at least one wrong pixel, so the test of the
-    /// pixels can then be skipped.
+    /// testing single pixels. A wrong cell contains at least one wrong pixel, so the pixels are not
+    /// tested if a cell is wrong.
     pub fn explains(&self, candidate: &Candidate) -> bool {
         let is_possible = !self.is_exact(candidate)
             || self
