@@ -97,8 +97,9 @@ impl BoardBatches {
 
 impl Batch {
     /// Computes and empties the queue. Calls `emit` for each pixel, with the area of the board's
-    /// first colour minus that of the second. `crossing` contains two numbers: how many lines of
-    /// each of the board's two families cross each pixel. The smaller number comes first.
+    /// first colour minus that of the second. `crossing` contains the number of crossed lines in
+    /// each of the board's two families, which is the same for all pixels. The smaller number comes
+    /// first.
     fn compute(
         &mut self,
         crossing: [usize; 2],

@@ -160,9 +160,10 @@ fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
 
 impl Homography {
     /// Derives the homography from the three linear forms of [`Homography`]. `across` contains the
-    /// forms of the two numerators, and `below` is the form of the common denominator. A common
-    /// positive factor of the three does not matter. The error bounds are smallest if the origin of
-    /// the floor's coordinates is near the part of the floor that the pixel shows.
+    /// forms of the two numerators, and `below` is the form of the common denominator. All three
+    /// may be multiplied by the same positive factor, because only their quotients are used. The
+    /// error bounds are smallest if the origin of the floor's coordinates is near the part of the
+    /// floor that the pixel shows.
     pub fn new(across: [[f64; 3]; 2], below: [f64; 3]) -> Self {
         let (below, scale) = normalized(below);
         let across = across.map(|form| form.map(|c| libm::ldexp(c, -scale)));
@@ -280,7 +281,8 @@ impl Homography {
         let place = form(&self.across[axis], at) / level;
         let terms = size(&self.across[axis]) + place.abs() * size(&self.below);
         // The factors of each form have three roundings, its value has four, and the quotient N/L
-        // has one. The total of 8 is doubled, because the error of L may be as large as half of L.
+        // has one, 8 in total. The error of N/L is proportional to 1/L. If L is as small as twice
+        // its own error, the true 1/L may be twice the computed one, so the total is doubled.
         (place, 16.0 * UNIT / level * terms)
     }
 

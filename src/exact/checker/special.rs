@@ -406,8 +406,9 @@ mod tests {
         close(expanded(&EXPANSIONS, 3.0), power_series(3.0), 1e-14);
     }
 
-    /// The first two terms of each part's asymptotic series are enough here: the third is at most
-    /// 6·7·8·9·y⁻⁴ of the first, 3.03e-13 at y = 10⁴. A few roundings are added to it.
+    /// The real and the imaginary part of each integral have an asymptotic series of their own. Two
+    /// terms of it are enough here: the third is at most 6·7·8·9·y⁻⁴ of the first, 3.03e-13 at y =
+    /// 10⁴. The tolerance adds a few roundings to this.
     #[test]
     fn both_parts_of_large_integrals_have_all_their_digits() {
         for y in [1e4, -1e4, 3e7, 5e10, -1e15] {
