@@ -56,8 +56,8 @@ pub struct Comparison {
     /// Root mean square of the differences over all channels of all pixels, in linear light, from 0
     /// to 1.
     pub rmse: f64,
-    /// The largest difference. Of several equal ones, it is the topmost, and in its row the
-    /// leftmost.
+    /// The largest difference. If it occurs several times, the topmost occurrence is given, and the
+    /// leftmost of these.
     pub largest: Largest,
     /// Number of pixels that differ by more than the tolerance.
     pub beyond: u64,
