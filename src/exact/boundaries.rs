@@ -111,8 +111,8 @@ pub fn curves(
             room = out.len() + max_curves;
         }
         // Equal curves are merged whenever `out` is longer than `room`. After a merge, `room` is
-        // set to the number of remaining curves plus `max_curves`. So if `room` exceeds `2 *
-        // max_curves`, more than `max_curves` unequal curves were found, and the search stops.
+        // set to the number of remaining curves plus `max_curves`. So if `room` is more than twice
+        // `max_curves`, more than `max_curves` unequal curves were found, and the search stops.
         if room > 2 * max_curves || budget.is_spent() {
             return ControlFlow::Break(());
         }

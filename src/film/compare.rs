@@ -1,9 +1,9 @@
 //! The differences between two pictures, and the position of the largest.
 //!
 //! In: two films. Out: the root mean square of their differences in linear light, the largest
-//! difference, and the number of pixels that differ by more than a tolerance. The last two are
-//! measured in steps of 8-bit sRGB, since equal steps look about equally large. A step is 1/255 of
-//! the way from black to white.
+//! difference, and the number of pixels that differ by more than a tolerance. The largest
+//! difference and the tolerance are measured in steps of 8-bit sRGB, since equal steps look about
+//! equally large. A step is 1/255 of the way from black to white.
 
 use thiserror::Error;
 

@@ -64,7 +64,7 @@ pub struct Verdict {
     pub samples: Option<f64>,
     /// The mistakes that together explain the picture.
     pub mistakes: Vec<NamedMistake>,
-    /// The mistakes whose predicted picture differs least from the picture. Given only if no known
+    /// The mistakes of the hypothesis that comes closest to the picture. Given only if no known
     /// mistakes explain the picture, or only implausible ones do.
     pub guesses: Vec<NamedMistake>,
     /// Fraction of the squared difference between the picture and the exact one that the guesses

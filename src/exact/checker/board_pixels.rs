@@ -31,8 +31,8 @@ pub(in crate::exact) struct BoardPixel {
     pub candidate: VisibilityCandidate,
 }
 
-/// Queues of checkerboard pixels. In one queue, all pixels are crossed by the same numbers of lines
-/// of the board's two families, those between columns and those between rows of squares.
+/// Queues of checkerboard pixels. All pixels of one queue are crossed by the same number of lines
+/// between the board's columns, and by the same number of lines between its rows.
 #[derive(Debug)]
 pub(in crate::exact) struct BoardBatches {
     batches: Vec<Batch>,

@@ -77,9 +77,9 @@ pub(in crate::exact) struct Homography {
     displacement: f64,
     /// Unit vector along the horizon.
     horizon: DVec2,
-    /// Coefficients d and e of the maximum displacement of a point perpendicular to the horizon by
-    /// rounding errors, d + e·L, in pixels. L is the value of the form `below` at the point; it is
-    /// 0 on the horizon.
+    /// Coefficients d and e, in pixels. Rounding errors displace a point by at most d + e·L
+    /// perpendicular to the horizon. L is the value of the form `below` at the point; it is 0 on
+    /// the horizon.
     across_horizon: [f64; 2],
     /// Maximum value of the form `below`, which is 0 on the horizon, at which a point is treated as
     /// lying on the horizon. A value up to this maximum may be only a rounding error.
@@ -198,8 +198,8 @@ impl Homography {
         let errors = [a, b, below].map(|form| 4.0 * UNIT * size(&form));
         let steepness = libm::hypot(below[0], below[1]);
         // Errors e of the forms displace a point by v = M⁻¹·e, where M is the matrix of the three
-        // forms. The initial value, four unit roundoffs, covers the rounding errors of the point's
-        // own coordinates.
+        // forms. The rounding errors of the point's own coordinates displace it by up to four unit
+        // roundoffs, the initial value of `displacement`.
         let volume = det.abs() * (1.0 - det_off(UNIT)).max(0.0);
         let (mut displacement, mut tilt) = (4.0 * UNIT, 0.0);
         for (error, column) in errors.iter().zip(&columns) {

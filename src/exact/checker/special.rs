@@ -186,7 +186,8 @@ pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS
 }
 
 /// Lowest and highest order s of the exponential integrals F_s ([`integrals`]). No other orders are
-/// needed, because the sums over an edge's crossings use only the exponents 3, 4 and 5.
+/// needed, because the sums over an edge's crossings contain the depth only to the powers −3, −4
+/// and −5.
 const ORDERS_OF_INTEGRALS: [u32; 2] = [3, 5];
 
 /// Value of |y| below which the exponential integral F_3(y) ([`integrals`]) is computed by the

@@ -115,9 +115,9 @@ impl FaultyTracer {
         let places: Vec<DVec2> = lattice(samples).into_iter().map(of_pixel).collect();
         let corners = CORNERS.map(of_pixel);
         let count = places.len() as f64;
-        // Whether a cell shows one colour. There is an entry for each column, which is overwritten
-        // row by row. So at each cell, it is known whether the cell above and the cell to the left
-        // show one colour.
+        // Whether the cell that was computed last in each column shows one colour. Cells are
+        // computed row by row. So the entry of a cell's own column belongs to the cell above, and
+        // the entry of the column before to the cell on the left.
         let mut is_flat = vec![false; part.width as usize];
         let pixel = |(x, y): (u32, u32)| {
             let corner = DVec2::new(f64::from(x), f64::from(y));

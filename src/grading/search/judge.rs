@@ -53,8 +53,7 @@ pub struct Judge<'a> {
     /// The central crop at full resolution; `None` if the picture has no more pixels than the crop.
     central: Option<Level<'a>>,
     pub work: Work<'a>,
-    /// The last few hypotheses, given by their mistakes, each with the errors in the picture that
-    /// it does not explain.
+    /// Residuals of the last few hypotheses. A hypothesis is identified by its mistakes.
     pub residuals: RefCell<VecDeque<(Vec<Mistake>, Residual)>>,
     /// Squared difference between the picture and that of a correct program, on the grid `middle`.
     /// Errors that sampling can explain are ignored. The errors of hypotheses are divided by it.

@@ -143,7 +143,7 @@ fn displacement_and_width(
 ) -> (Option<Displacement>, Option<f64>) {
     let level = &judge.fine;
     let share = match level.jpeg {
-        // In a JPEG, the number of samples is not estimated by the score, because coding also
+        // In a JPEG, the share is not derived from the number of samples in the score: coding also
         // changes edges, which would look like fewer samples.
         Some(_) => prediction.share(),
         None => {
