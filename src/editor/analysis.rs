@@ -30,8 +30,7 @@ pub(super) struct Path<'a, 's> {
     pub definition: Option<&'a Definition<'s>>,
     /// The block that contains the offset.
     pub block: Option<&'a Block<'s>>,
-    /// The values that contain the offset. Each value is a part of the one before it, such as `1`
-    /// in `1 + x`.
+    /// The field of the block that contains the offset.
     pub field: Option<&'a Field<'s>>,
     /// The values that contain the offset. Each value is a part of the one before it, as `1` is of
     /// `1 + x`.

@@ -200,7 +200,7 @@ fn list_to_type_over<'p>(open: &str, parts: impl Iterator<Item = &'p str>) -> Ve
 /// of the current block.
 fn example(analysis: &Analysis<'_>, situation: &Situation, field: &FieldRow) -> String {
     let at = situation.word.start;
-    // The current block is the last one that starts before the word. It may not be closed yet.
+    // The current block is the last one that starts before the word. Its `}` may still be missing.
     let blocks = analysis.blocks();
     let block = blocks.take_while(|block| block.span.start <= at).last();
     example_beside(field, &|name| {

@@ -164,8 +164,8 @@ fn open_lists(analysis: &Analysis<'_>, at: usize) -> usize {
 }
 
 /// Returns what can be typed in place of `word`. `path` is the path in the syntax tree to the name
-/// that replaces `word` while the text is parsed. Returns `None` in the name of a definition, and
-/// in the part of a block between its keyword and its braces.
+/// that replaces `word` while the text is parsed. Returns `None` if `word` is the name of a
+/// definition, or stands between the keyword and the braces of a block.
 fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
     let row = path
         .block

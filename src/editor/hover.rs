@@ -185,8 +185,8 @@ pub(super) fn about_index(analysis: &Analysis<'_>, index: &Index<'_>) -> String 
 }
 
 /// Returns the index in `path.values` of the value that the hover describes. Usually this is the
-/// last one, i.e. the innermost value. A number, a list or a negation within an operation or a call
-/// is not described by itself; the hover describes the operation or the call.
+/// last value, i.e. the innermost one. If that is a number, a list or a negation within an
+/// operation or a call, the hover describes the innermost such operation or call instead.
 fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
     use ValueKind::{Call, Chain, Negation, Number, Parentheses, Tuple};
     let (value, around) = path.values.split_last()?;

@@ -30,9 +30,10 @@ const MIN_AREA: f64 = 1.0 / (1u64 << 46) as f64;
 /// line.
 ///
 /// Derivation: the form has the same sign at all vertices, and its value at the centre is the mean
-/// of those at the vertices. If the centre's value is at most e, those at the vertices are at most
-/// n·e. All vertices are then within 2n·e of the line, because the larger of |a| and |b| is at
-/// least 1/2. The cell is at most √2 long, so that its area is at most 2·√2·n·e, and 2·√2 < 3.
+/// of those at the vertices. If the centre may be on the wrong side, the absolute value there is at
+/// most e, so those at the vertices are at most n·e. All vertices are then within 2n·e of the line,
+/// because the larger of |a| and |b| is at least 1/2. The cell is at most √2 long, so that its area
+/// is at most 2·√2·n·e, and 2·√2 < 3.
 const MAX_AREA_PER_HEIGHT: f64 = 3.0;
 
 /// Maximum rounding error of the form a·x + b·y + c of a line at a vertex. At a smaller absolute

@@ -110,9 +110,9 @@ pub fn curves(
             merge_equal_curves(out);
             room = out.len() + max_curves;
         }
-        // Equal curves are merged again when `out` is longer than `room`. After a merge, `room` is
-        // the number of unequal curves plus `max_curves`. So if `room` exceeds `2 * max_curves`,
-        // there are more than `max_curves` unequal curves, and the search stops.
+        // Equal curves are merged whenever `out` is longer than `room`. After a merge, `room` is
+        // set to the number of remaining curves plus `max_curves`. So if `room` is more than twice
+        // `max_curves`, more than `max_curves` unequal curves were found, and the search stops.
         if room > 2 * max_curves || budget.is_spent() {
             return ControlFlow::Break(());
         }
@@ -215,7 +215,8 @@ impl<'a, T: Precision> Boundaries<'a, T> {
 
     /// Appends to `out` the boundary curves of `source` that may pass through the sub-pixel.
     /// Returns `false` if two surfaces of the source have no intersection curve in the precision
-    /// `T`. They are then equal planes or concentric spheres, or cannot be distinguished from such.
+    /// `T`. They are then equal planes or concentric spheres, or differ from these by no more than
+    /// rounding errors.
     fn push(&self, source: BoundarySource, out: &mut Vec<Boundary>) -> bool {
         let mut push = |curve: Boundary| {
             if curve.may_cross_pixel() {

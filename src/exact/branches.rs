@@ -141,10 +141,10 @@ impl ConicGraph {
         let root = root * side;
         let at = Double::from_f64(x);
         let minus = b.times(&at).plus(e).negated().hi;
-        // The conic has two equal formulas for y (`ConicGraph`): (−b ± √Δ)/C and g/(−b ∓ √Δ). The
-        // one whose sum does not cancel is used. If Δ is 0, neither sum cancels, and the first
-        // formula is used: at the end of a branch, x is rounded, so the exact Δ may be slightly
-        // negative, and the second formula would then be wrong.
+        // In exact arithmetic, the formulas (−b ± √Δ)/C and g/(−b ∓ √Δ) give the same y
+        // (`ConicGraph`). The one in which nothing cancels is used. If Δ is 0, this holds for each
+        // of them, and the first is used: at the end of a branch, x is rounded, so the exact Δ may
+        // be slightly negative, and the second formula would then be wrong.
         if minus * side >= 0.0 || root == 0.0 {
             (minus + root) / c.hi
         } else {
@@ -196,8 +196,8 @@ impl<'a> ConicSpan<'a> {
             return None;
         }
         // If the branch is curved in one direction only, its distance from the chord is at most
-        // twice `sagitta`, the distance in the middle. The branch is therefore outside the pixel if
-        // its three computed points are farther outside than that.
+        // twice `sagitta`, the distance in the middle. So if its two ends and its middle are all
+        // outside the pixel by more than twice `sagitta`, the whole branch is outside.
         let sagitta = y[1] - 0.5 * (y[0] + y[2]);
         let size = y.iter().fold(1.0, |size: f64, y| size.max(y.abs()));
         let beyond = 0.5 + 2.0 * sagitta.abs() + OUTSIDE_MARGIN * size;
@@ -256,9 +256,9 @@ impl<'a> ConicSpan<'a> {
             end,
             weight: w2.sqrt(),
         };
-        // Minimum weight of an arc. For a circle, the weight is the cosine of half the arc's turn.
-        // An arc of less weight turns by more than 120° and is rejected, so that the caller halves
-        // it.
+        // Minimum weight of an arc, and the reciprocal of the maximum. For a circle, the weight is
+        // the cosine of half the arc's turn, so less weight means a turn of more than 120°. An arc
+        // beyond these limits is rejected, and the caller halves it.
         const MIN_WEIGHT: f64 = 0.5;
         let turns_little = arc.weight > MIN_WEIGHT && arc.weight < 1.0 / MIN_WEIGHT;
         (control.x >= 0.0 && control.x <= end.x - start.x && turns_little).then_some((arc, off))
@@ -295,11 +295,11 @@ impl Tangents {
         // the triangle's area and the weight change in opposite directions, so that the area
         // between arc and chord changes no more than the triangle's area.
         //
-        // The square of the weight is the quotient of two values of the conic's quadratic part Q.
-        // The area between arc and chord grows no faster than the weight. A value of Q has two
-        // errors: the rounding errors of its terms, and the effect of the error of its argument, a
-        // vector. An error of the root √Δ (`ConicGraph`) is not included: it corresponds to another
-        // conic within the error of the given one, which moves points and tangents together.
+        // The weight has an error, too. Its square is the quotient of two values of the conic's
+        // quadratic part Q. A value of Q has two errors: the rounding errors of its terms, and the
+        // effect of the error of its argument, a vector. The area between arc and chord grows no
+        // faster than the weight. An error of the root √Δ (`ConicGraph`) is not included: it means
+        // another conic within the given one's error, which moves points and tangents together.
         let [a, b, c, d, ..] = factors;
         let product = |[x, y]: &[T; 2], [z, w]: &[T; 2]| x.times(z).plus(&y.times(w));
         let length = |[x, y]: &[T; 2]| libm::hypot(x.to_f64(), y.to_f64());
@@ -439,10 +439,10 @@ impl Section {
         // the slope of the steepest tangent, is added. A difference in weight, times the point's
         // distance from the control point, is the most by which the point moves.
         //
-        // Rounding may move the control point of a narrow arc along the arc, where the area hardly
-        // depends on it. The error of a point is less than the sum of two terms. One is eight times
-        // the area's error divided by the width. The other is the rounding error of x, which
-        // changes the area by at most this error times the arc's height.
+        // Rounding errors move a point by less than the sum of two terms. The first is eight times
+        // the error of the arc's area, divided by the arc's width. The second is the rounding error
+        // of x, times the slope of the steepest tangent. The second is needed because rounding may
+        // move the control point of a narrow arc along the arc, which hardly changes the area.
         let ((up, a), (other_up, b)) = (self.arc.as_ref()?, other.arc.as_ref()?);
         if up != other_up {
             return None;

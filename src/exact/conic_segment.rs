@@ -66,10 +66,11 @@ impl Arc {
         let area = 0.5 * (products[0] - products[1]).abs() * share;
         BoundedSum {
             value: area,
-            // The segment's share of the triangle has up to ten roundings. At |1 − w²| =
-            // `NEAR_PARABOLA`, the difference θ − sin θ·cos θ is only a quarter of its terms, which
-            // makes their roundings four times as large. In a flat triangle, the two products are
-            // nearly equal: their own roundings, three each, may exceed those of the difference.
+            // The area is half the difference of `products`, times the share of the triangle that
+            // the segment covers. The share has up to ten roundings. At |1 − w²| = `NEAR_PARABOLA`,
+            // the difference θ − sin θ·cos θ is only a quarter of its terms, which makes their
+            // roundings four times as large. In a flat triangle, the two products are nearly equal.
+            // Their own roundings, three each, may then exceed those of their difference.
             bound: UNIT * (48.0 * area + 2.0 * (products[0].abs() + products[1].abs()) * share),
         }
     }
@@ -154,9 +155,10 @@ impl Homography {
         // lies in one square. The chords of the pieces enclose the rest of the region, a convex
         // polygon.
         //
-        // A piece whose segment is smaller than a limit is replaced by its chord. If an arc with a
-        // segment of area A is cut into n pieces, each piece has a segment of A/n³, and all pieces
-        // together have A/n². This total equals the tolerance t if the limit is t^(3/2)/√A.
+        // A piece whose segment is smaller than `neglected` is replaced by its chord. If an arc
+        // with a segment of area A is cut into n pieces, each piece has a segment of A/n³, and all
+        // pieces together have A/n². If n = √(A/t), this total is the tolerance t, and a piece's
+        // segment is t^(3/2)/√A. So this is the value of `neglected`.
         if let Some(sign) = self.square_of(arc) {
             return over_one_square(segment, sign);
         }

@@ -16,10 +16,10 @@
 //! 2. In any other pixel, the boundaries of what may be seen there cut it into regions. These are
 //!    convex polygons if all boundaries are lines (`arrangement`), and slabs between neighbouring
 //!    curves if some are conics (`slabs`). A pixel with too many curves is quartered first.
-//! 3. One ray into each region, decided as exactly as that of a sample, determines what is seen
-//!    there (`region`). Hidden boundaries do no harm, because both sides of them get the same
-//!    colour. (Catmull, "A hidden-surface algorithm with anti-aliasing", 1978, integrates a pixel's
-//!    polygons this way; conics and the board are added here.)
+//! 3. One ray into each region determines what is seen there (`region`). Its hits are decided as
+//!    exactly as those of a sample's ray. Hidden boundaries do no harm, because both sides of them
+//!    get the same colour. (Catmull, "A hidden-surface algorithm with anti-aliasing", 1978,
+//!    integrates a pixel's polygons this way; conics and the board are added here.)
 //! 4. Areas have closed forms. `conic_segment` computes the area between an arc and its chord;
 //!    `checker` integrates a checkerboard over a region.
 //!
@@ -89,8 +89,8 @@ const MAX_QUARTERINGS: usize = 16;
 /// computed are added to the error bound. A smaller maximum would cause this error more often.
 const MAX_MEMORY: usize = 64 << 20;
 /// Minimum side, in pixels, of a square part of a pixel that is quartered because too many curves
-/// pass through it. The area of a smaller part is added to the error bound instead; it is less than
-/// a unit roundoff of the pixel's area.
+/// pass through it. A smaller part is not quartered. Its area, less than a unit roundoff of the
+/// pixel's area, is added to the error bound.
 const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
 /// Work charged to a pixel's budget per square part of the pixel ([`PixelPiece`]), in units of
 /// about 50 ns. A rough value is enough, because the budget only stops what takes too long.
@@ -142,7 +142,7 @@ enum PieceState {
     /// budget is spent.
     Crowded,
     Computed,
-    /// Computed, and not quartered again, because the last quartering hardly reduced the bound.
+    /// Computed, and not to be quartered, since the last quartering hardly reduced the bound.
     Final,
 }
 
@@ -334,7 +334,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         while bound > self.tolerance
             && !budget.is_spent()
             && queue.peek().is_some_and(|ByKey(_, worst)| {
-                // Adding to a full queue doubles it; the old and the new memory then both exist.
+                // A full queue doubles when parts are added; old and new memory then both exist.
                 let copies = 1 + 2 * usize::from(queue.len() + 3 > queue.capacity());
                 let places = copies * queue.capacity() * size_of::<ByKey<PixelPiece>>();
                 memory + places + 4 * worst.memory() <= MAX_MEMORY
@@ -420,7 +420,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         film: &mut PartPixels<N>,
         deferred: &mut Vec<BoardPixel>,
     ) {
-        // Rounding errors of the first colour's share, 0.5 + `half`, and of the pixel's mean.
+        // `roundings` bounds the rounding errors of the first colour's share and of the mean.
         let roundings = UNIT + rounding(2);
         let half = sum.map(|BoundedSum { value, bound }| (0.5 * value, 0.5 * bound + roundings));
         let Some((half, bound)) = half.filter(|(_, bound)| *bound <= self.tolerance) else {

@@ -44,8 +44,8 @@ pub struct Shares {
     pub bound: f64,
 }
 
-/// Sum, over the regions of a sub-pixel, of the fractions of the sub-pixel's area that show each
-/// colour.
+/// Sums of the fractions of a sub-pixel's area that show each colour, to which the regions of the
+/// sub-pixel are added one by one.
 pub struct Regions<'a> {
     world: &'a World,
     sub_pixel: SubPixel,
@@ -123,9 +123,9 @@ impl<'a> Regions<'a> {
             sum.bound += segment.bound;
         }
         let half = if local_board.odd { -0.5 } else { 0.5 } * sum.value;
-        // `sum.bound` assumes that each factor of the board's forms has one rounding error. The
-        // bound is increased, because the factors may have greater errors. The error of a share
-        // never exceeds the region's area.
+        // `sum.bound` assumes that each factor of the board's forms is rounded once.
+        // `relative_error` may be many times this rounding error, so the bound is multiplied by one
+        // plus the ratio of the two. The error of a share never exceeds the region's area.
         let bound = 0.5 * sum.bound * (1.0 + local_board.relative_error / f64::UNIT);
         let bound = bound.min(0.5 * region.area + half.abs());
         self.shares.add(first, 0.5 * region.area + half);
@@ -178,7 +178,8 @@ impl<'a> Regions<'a> {
         let total: f64 = shares.by_slot.iter().map(|(_, share)| share).sum();
         shares.bound += (1.0 - total).abs();
         if !(shares.bound.is_finite() && total > 0.0 && total < 2.0) {
-            // Intermediate results must have overflowed, so that the shares are meaningless.
+            // Only an overflow of intermediate results can cause such a bound or total. The shares
+            // are then meaningless.
             return self.unknown();
         }
         // The bound is limited to 1, because a channel of the pixel's mean colour cannot have a

@@ -45,8 +45,8 @@ const MIN_WIDTH: f64 = 1.0 / (1u64 << 48) as f64;
 const MAX_ADDED_SLABS: usize = 4096;
 
 /// Maximum number of steps of the false position method that searches where two curves cross. After
-/// the last step, its estimate is used. The value is a little more than the 53 steps that bisection
-/// takes from a pixel's side to the unit roundoff.
+/// the last step, its estimate is used. Bisection would need 53 steps to narrow an interval from a
+/// pixel's side to the unit roundoff; the value is a little more.
 const MAX_STEPS: usize = 60;
 
 /// Maximum rounding error of the area of a region in a slab, divided by the slab's width. Two

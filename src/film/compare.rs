@@ -1,9 +1,9 @@
 //! The differences between two pictures, and the position of the largest.
 //!
 //! In: two films. Out: the root mean square of their differences in linear light, the largest
-//! difference, and the number of pixels that differ by more than a tolerance. The last two are
-//! measured in steps of 8-bit sRGB, since equal steps look about equally large. A step is 1/255 of
-//! the way from black to white.
+//! difference, and the number of pixels that differ by more than a tolerance. The largest
+//! difference and the tolerance are measured in steps of 8-bit sRGB, since equal steps look about
+//! equally large. A step is 1/255 of the way from black to white.
 
 use thiserror::Error;
 
@@ -56,8 +56,8 @@ pub struct Comparison {
     /// Root mean square of the differences over all channels of all pixels, in linear light, from 0
     /// to 1.
     pub rmse: f64,
-    /// The largest difference. Of several equal ones, it is the topmost, and in its row the
-    /// leftmost.
+    /// The largest difference. If it occurs several times, the topmost occurrence is given, and the
+    /// leftmost of these.
     pub largest: Largest,
     /// Number of pixels that differ by more than the tolerance.
     pub beyond: u64,

@@ -52,8 +52,8 @@ pub fn write_exr<P: AsFloats>(
 ///
 /// # Errors
 ///
-/// `out` cannot be written to, a band is an error, or the bands do not have the size of `part`, or
-/// `part` does not lie in `whole`.
+/// `out` cannot be written to, an item of `bands` is an error, the bands do not have the size of
+/// `part`, or `part` does not lie in `whole`.
 pub fn write_exr_bands<P: AsFloats, B: Borrow<Film<P>>>(
     part: Area,
     whole: Area,
@@ -87,7 +87,8 @@ pub fn write_exr_bands<P: AsFloats, B: Borrow<Film<P>>>(
             for (at, index) in meta.enumerate_ordered_header_block_indices() {
                 let mut failed = Ok(());
                 let block = UncompressedBlock::from_lines(channels, index, |line| {
-                    // Channels are stored in alphabetical order: blue, green, red.
+                    // Channels are stored in alphabetical order: blue, green, red. A row of pixels
+                    // has them in the opposite order.
                     let (y, channel) = (line.location.position.y(), 2 - line.location.channel);
                     let written = rows
                         .row(y as u32)
@@ -109,8 +110,8 @@ pub fn write_exr_bands<P: AsFloats, B: Borrow<Film<P>>>(
     })
 }
 
-/// Returns the header of an OpenEXR file. It is in a list, since such a file may have several
-/// headers.
+/// Returns the header of an OpenEXR file, as a list with one item. The format allows several
+/// headers, so the library expects a list.
 fn headers(part: Area, whole: Area, digest: Option<&str>) -> Headers {
     let channel = |name: &str| ChannelDescription::named(name, SampleType::F32);
     let size = Vec2(part.width as usize, part.height as usize);

@@ -31,7 +31,8 @@ pub struct Jpeg {
 /// coefficient is rounded to a multiple of its step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JpegTable {
-    /// Square of the quantization step of a block's mean.
+    /// Square of the quantization step of a block's mean. The rounding error of the mean has a
+    /// twelfth of this as its variance.
     pub first: f64,
     /// Mean of the squares of all 64 steps.
     pub mean: f64,

@@ -2,12 +2,13 @@
 
 use crate::math::{Double, Real, two_product};
 
-/// Returns the mean colour of a pixel's samples, Σ count · colour / n, rounded once. The iterator
-/// `seen` yields each colour with the count of its samples, and n is the sum of the counts.
+/// Returns the mean colour of a pixel's samples, Σ count · colour / n. The iterator `seen` yields
+/// each colour with the count of its samples, and n is the sum of the counts.
 ///
 /// Sums and quotients are computed with double-doubles, i.e. sums of two `f64`, with relative
-/// errors of about 2^−100. The order of the colours may change the last bit, so callers pass them
-/// in a fixed order. A single colour is returned unchanged.
+/// errors of about 2^−100. So only the final rounding to `f64` is noticeable. The order of the
+/// colours may still change the last bit, so callers pass them in a fixed order. A single colour is
+/// returned unchanged.
 pub fn mean(seen: impl Iterator<Item = (u64, [f64; 3])>) -> [f64; 3] {
     let mut samples = 0;
     let mut sums = [Double::from_f64(0.0); 3];
@@ -21,9 +22,9 @@ pub fn mean(seen: impl Iterator<Item = (u64, [f64; 3])>) -> [f64; 3] {
     sums.map(|sum| quotient(&sum, samples as f64))
 }
 
-/// Returns `sum`/`count`, rounded only by the last addition. The quotient is computed in two steps
-/// of long division: first the leading part of `sum` is divided, then the remainder. The remainder
-/// is exact, except that adding the trailing part, `sum.lo`, rounds it.
+/// Returns `sum`/`count`. The quotient is computed in two steps of long division: first the leading
+/// part of `sum` is divided, then the remainder. The last addition rounds the result to `f64`; the
+/// other rounding errors, of the remainder and of its quotient, are far smaller.
 fn quotient(sum: &Double, count: f64) -> f64 {
     let first = sum.hi / count;
     let product = two_product(first, count);

@@ -13,10 +13,11 @@ pub struct Picture {
     pub rounding: Rounding,
     /// Change of colours by the file's format, besides rounding.
     pub coding: Coding,
-    /// The part of the whole picture that the file contains; `None` if the file does not say so.
+    /// The part of the whole picture that the file contains. `None` if it contains all of it, or
+    /// does not name a part.
     pub crop: Option<Area>,
-    /// Numbers of columns and rows of the whole picture, if the file contains only a part and says
-    /// so. Otherwise `None`.
+    /// Numbers of columns and rows of the whole picture. `None` if `crop` is `None`, or if the file
+    /// does not give them.
     pub size: Option<[u32; 2]>,
     /// Opacity of the pixels; `None` if all are opaque.
     pub opacity: Option<Opacity>,

@@ -17,9 +17,9 @@ pub trait Pixel: Copy + Default + Send + Sync {
     /// Converts the mean `light`, in linear light, to this type.
     fn of(light: [f64; 3], encoder: &Encoder) -> Self;
 
-    /// Returns whether all colours within `bound` of `light` in each channel are converted to the
-    /// same pixel. 64-bit floats are first rounded to 32 bits for this comparison, because EXR
-    /// files contain 32-bit floats.
+    /// Returns whether the pixel is certain: whether all colours within `bound` of `light` in each
+    /// channel are converted to the same pixel. For 64-bit floats, this means the same 32-bit
+    /// floats, because EXR files contain these.
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool;
 }
 

@@ -83,11 +83,12 @@ pub fn write_png<P: AsBytes>(
 }
 
 /// Writes a picture as [`write_png`] does, from bands of rows, from the top to the bottom. The
-/// whole picture need not be in memory. `size` is the numbers of columns and rows.
+/// whole picture need not be in memory. `size` contains the numbers of columns and rows.
 ///
 /// # Errors
 ///
-/// `out` cannot be written to, a band is an error, or the bands do not have the picture's size.
+/// `out` cannot be written to, an item of `bands` is an error, or the bands do not have the
+/// picture's size.
 pub fn write_png_bands<P: AsBytes, B: Borrow<Film<P>>>(
     size: [u32; 2],
     recipe: Option<&Recipe>,
@@ -265,7 +266,8 @@ fn chunk(bytes: &[u8]) -> Option<(&[u8], &[u8], &[u8])> {
     let (length, rest) = bytes.split_first_chunk::<4>()?;
     let length = usize::try_from(u32::from_be_bytes(*length)).ok()?;
     if rest.starts_with(b"IDAT") {
-        // Only the start of the file may have been read, so the chunk of pixels may be incomplete.
+        // If `bytes` is only the start of a file, the chunk of pixels is incomplete, so it is not
+        // checked.
         return Some((&rest[..4], &[], &[]));
     }
     let (checked, rest) = rest.split_at_checked(length.checked_add(4)?)?;

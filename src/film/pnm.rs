@@ -290,8 +290,8 @@ impl Raster {
     }
 }
 
-/// Repairs binary numbers that a system changed as if they were text. Returns the bytes and the
-/// kind of damage, or `None` if no repair gives exactly `wanted` bytes.
+/// Repairs binary numbers that a system damaged because it took them for text. Returns the bytes
+/// and the kind of damage, or `None` if no repair gives exactly `wanted` bytes.
 fn mended(raster: &[u8], wanted: usize) -> Option<(Vec<u8>, Coding)> {
     let of_lines = |raster: &[u8]| without_returns(raster, wanted);
     if let Some(raster) = of_lines(raster) {

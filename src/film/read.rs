@@ -111,7 +111,8 @@ fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unread
         2 => Rounding::Word,
         _ => Rounding::Float,
     };
-    // The memory must suffice for the decoded picture, its copy with four channels, and the film.
+    // `whole` is the number of bytes for each pixel in three copies of the picture: the decoded
+    // one, one with four channels, and the film.
     let channels = match rounding {
         Rounding::Float => size_of::<[f32; 4]>(),
         _ => size_of::<[u16; 4]>(),

@@ -43,8 +43,8 @@ pub struct Part {
 }
 
 impl Recipe {
-    /// Returns whether a PNG stores the recipe's texts: their total length and the number of
-    /// overrides must be within the limits.
+    /// Returns whether the recipe's texts are short enough to be stored in a PNG: whether the
+    /// number of overrides and the total length are within their limits.
     pub fn fits(&self) -> bool {
         let overrides: usize = self.overrides.iter().map(String::len).sum();
         self.overrides.len() <= OVERRIDES_LIMIT && self.scene.len() + overrides <= TEXT_LIMIT

@@ -49,8 +49,8 @@ impl Encoder {
     /// Converts one channel from linear light to a byte of sRGB. Light below 0 becomes 0, and light
     /// above 1 becomes 255.
     pub fn encode(&self, light: f64) -> u8 {
-        // Multiplying by a power of two is exact. The conversion to an integer makes negative light
-        // 0, and `min` limits light above 1.
+        // Because `PARTS` is a power of two, the product is exact. Converting it to an integer
+        // turns negative light into 0. `min` limits light above 1.
         let part = ((light * PARTS as f64) as usize).min(PARTS);
         let mut byte = self.start[part];
         while byte < 255 && self.thresholds[usize::from(byte)] <= light {

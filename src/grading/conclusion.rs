@@ -51,7 +51,8 @@ const PARALLEL_OF_OWN_SIZE: &str =
 pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Verdict {
     let (scene, jpeg) = (judge.scene, judge.fine.jpeg);
     let right = Candidate::correct(scene);
-    // A search that explained the picture is complete, so it was not cut short.
+    // If the picture is explained, the verdict needs no further search, so it is not reported as
+    // cut short.
     let is_explained = matches!(found, Some((_, true)));
     let is_cut = judge.work.is_cut() && !is_explained;
     let mut verdict = match found {
@@ -157,7 +158,7 @@ fn attributed(judge: &Judge, last: &Candidate, is_explained: bool) -> Vec<NamedM
             message = format!("{message}: {is} instead of {should}");
         }
         if message.contains(GAIN) && gain == "1" {
-            // The estimated factor rounds to 1, so light is not scaled by mistake.
+            // The estimated factor rounds to 1, so no scaling of light is reported.
             (left, before) = (now, after);
             continue;
         }
@@ -208,8 +209,8 @@ fn with_mistakes(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     } else {
         (Kind::Unknown, Vec::new(), mistakes)
     };
-    // If only guesses are reported, they do not explain the picture. The objects are then judged by
-    // the correct scene.
+    // Guesses do not explain the picture. So if only guesses are reported, the objects are compared
+    // with the correct scene.
     let known = if is_named { last } else { &correct };
     let (mut objects, is_background_right) = objects::judged(judge, known);
     for object in mistakes.iter().filter_map(|mistake| mistake.object) {
@@ -260,8 +261,8 @@ fn is_made_up(candidate: &Candidate) -> bool {
 }
 
 /// Returns the variants of a mistake that explain the picture, too. The picture alone cannot tell
-/// which of them the program makes. Only variants that are visible inside areas of one colour are
-/// tried.
+/// which of them the program makes. Variants that are visible only weakly inside areas of one
+/// colour, or only at edges, are left out.
 fn equivalent_rows(judge: &Judge, candidate: &Candidate, mistake: &Mistake) -> Vec<Mistake> {
     let Mistake::Row(row, object) = mistake else {
         return Vec::new();

@@ -66,8 +66,9 @@ pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Op
     let seen: Vec<DVec3> = without.pixels().iter().copied().map(DVec3::from).collect();
     let prediction = Prediction::new(&seen, width, Arc::clone(moments), Curve::Correct);
     // `samples` is estimated from the noise, so it is a harmonic mean: that of the sample counts of
-    // all pixels with samples. It is less than n + 1, where n is the mean sample count of all
-    // pixels. So the expected fraction of empty pixels, e⁻ⁿ, is less than e^(1 − `samples`).
+    // all pixels with samples. The harmonic mean is at most their arithmetic mean, n/(1 − e⁻ⁿ),
+    // where n is the mean sample count of all pixels. This is less than n + 1. So the expected
+    // fraction of empty pixels, e⁻ⁿ, is less than e^(1 − `samples`).
     let samples = prediction.score().samples?;
     let expected = count * libm::exp(1.0 - samples);
     is_chance(found, expected).then_some(without)

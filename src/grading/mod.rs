@@ -8,7 +8,7 @@
 //! picture that it would render explains the given one. The search (`search`) looks for the
 //! hypothesis that explains the picture best with the fewest mistakes. Before the search,
 //! `plain_facts` and `empty_pixels` handle what is obvious. After it, `conclusion` makes the
-//! `verdict`, with one for each object (`objects`), in the words of `wording`.
+//! `verdict` on the picture, and `objects` judges each object. The messages come from `wording`.
 
 mod conclusion;
 mod empty_pixels;
@@ -202,8 +202,8 @@ impl Reference {
             return self.judge_opaque(&picture.film, jpeg, cancel);
         };
         // First, a transparent picture is judged as it appears on black. If it is wrong there, or
-        // if no pixel is opaque, its colours are judged without alpha. But if alpha is 0
-        // everywhere, nothing is visible, so the colours are not judged.
+        // if no pixel is opaque, its colours are judged as if every pixel were opaque. A picture
+        // whose alpha is 0 everywhere shows nothing, so its colours are not judged.
         let verdict = self.judge_opaque(&picture.film, jpeg, cancel)?;
         let is_right = matches!(verdict.kind, Kind::Right | Kind::Noise);
         if is_right && opacity.range[1] == 1.0 {

@@ -38,7 +38,7 @@ pub struct ObjectVerdict {
     pub off: f64,
 }
 
-/// Returns the verdicts on the objects of a scene that a picture shows correctly.
+/// Returns the verdicts on the objects of a scene if a picture shows the whole scene correctly.
 pub fn right(scene: &Scene) -> Vec<ObjectVerdict> {
     let right = |index: usize| ObjectVerdict {
         index,
@@ -132,7 +132,8 @@ fn squares(board: &Checkerboard, projection: &Projection) -> Vec<DVec3> {
     let crossing = |at| {
         let plane = DVec3::Y * board.y;
         let point = projection.on_plane(projection.size * place(at), plane, DVec3::Y)?;
-        // Beyond a depth of 100 squares, single squares are too small to be seen.
+        // Beyond a depth of 100 squares, single squares are too small to be seen, so points farther
+        // away are left out.
         let is_seen = projection.depth(point) < 100.0 * board.square;
         is_seen.then_some(point / board.square)
     };

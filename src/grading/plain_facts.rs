@@ -131,8 +131,9 @@ pub fn without_empty_rows(film: &Film, exact: &Film) -> Option<(Film, NamedMista
         let light = film.row(at(0))[0];
         let is_empty = |y: &u32| film.row(at(*y)).iter().all(|pixel| *pixel == light);
         let count = (0..height).take_while(is_empty).count() as u32;
-        // A row that has one colour in the exact picture may show the sky, in a wrong colour. So it
-        // is reported as empty only if its correct colour appears elsewhere in the picture.
+        // A row that should have one colour may show the sky in a wrong colour, instead of being
+        // empty. In that case, the row's correct colour is usually nowhere in the picture. So the
+        // row is reported as empty only if that colour appears somewhere.
         let is_shown = |light| film.pixels().iter().any(|pixel| is_near(*pixel, light));
         let is_wrong = |y: &u32| {
             let own = exact.row(at(*y));

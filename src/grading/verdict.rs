@@ -64,7 +64,7 @@ pub struct Verdict {
     pub samples: Option<f64>,
     /// The mistakes that together explain the picture.
     pub mistakes: Vec<NamedMistake>,
-    /// The mistakes whose predicted picture differs least from the picture. Given only if no known
+    /// The mistakes of the hypothesis that comes closest to the picture. Given only if no known
     /// mistakes explain the picture, or only implausible ones do.
     pub guesses: Vec<NamedMistake>,
     /// Fraction of the squared difference between the picture and the exact one that the guesses
@@ -97,8 +97,8 @@ impl Verdict {
         }
     }
 
-    /// Adds an obvious fact before the mistakes or guesses. Unless the verdict is unknown, it
-    /// becomes wrong.
+    /// Adds an obvious fact before the mistakes or guesses. The verdict's kind becomes
+    /// [`Kind::Wrong`], unless it is [`Kind::Unknown`].
     pub fn with_fact(mut self, fact: NamedMistake) -> Self {
         match self.kind {
             Kind::Unknown => self.guesses.insert(0, fact),

@@ -12,7 +12,8 @@ pub type LineColumn = (u32, u32);
 pub struct Document {
     /// Version number that the client has given to the text.
     pub version: i32,
-    /// Source files of the scene: only this text, because an editor passes no `--set` arguments.
+    /// Source texts of the scene. The scene file is this text. There are no `--set` arguments,
+    /// since only the command line passes them.
     pub sources: Sources,
     encoding: Encoding,
 }

@@ -42,9 +42,10 @@ struct Frame {
 }
 
 impl Frames {
-    /// Adds the frame that a request asks for. If the queue contains an equal frame, the new
-    /// request replaces the earlier request for it. Otherwise, frames of other versions of the text
-    /// are dropped. Returns the identifiers of the requests that are replaced or dropped.
+    /// Adds the frame that a request asks for. If the queue contains a frame of the same text with
+    /// the same version, scale and number of samples, the new request replaces the earlier request
+    /// for that frame. Otherwise, frames of other versions of the text are dropped. Returns the
+    /// identifiers of the requests that are replaced or dropped.
     pub fn push(
         &mut self,
         id: RequestId,
@@ -55,7 +56,8 @@ impl Frames {
         let new = Frame::new(id, uri, params, version)?;
         let what = |frame: &Frame| (frame.version, frame.scale, frame.samples);
         let mut of_text = self.0.iter_mut().filter(|frame| frame.uri == new.uri);
-        // An equal frame that is being rendered already is continued for the new request.
+        // The queue contains the same frame already, and a part of it may be rendered. This frame
+        // then answers the new request.
         if let Some(known) = of_text.find(|frame| what(frame) == what(&new)) {
             return Ok(vec![mem::replace(&mut known.id, new.id)]);
         }
@@ -135,7 +137,8 @@ impl Frame {
             most.is_none_or(|most| Area::whole(width, height).pixels() <= most)
                 && longest.is_none_or(|longest| width.max(height) <= longest)
         };
-        // With the greatest scale, a frame has only one pixel, so a suitable scale always exists.
+        // With the greatest scale, a frame has only one pixel and is within any limit of the
+        // request, so a scale is always found.
         let scale = (scale..).find(fits).unwrap_or(u32::MAX);
         let (width, height) = version.size(scale);
         let whole = Area::whole(width, height);

@@ -190,7 +190,8 @@ mod tests {
             assert_eq!(response["id"], 7);
             assert_eq!(response["error"]["code"], ErrorCode::InvalidRequest as i32);
         }
-        // A string counts as one value, even if it contains `[`, `,` and `:`.
+        // The first message has a long string and the second 40 000 changes. Both are accepted: a
+        // string is one value, even if it contains `[`, `,` and `:`.
         let text = r#"\"[,:\\"#.repeat(MOST_VALUES);
         let place = r#"{ "line": 1, "character": 2 }"#;
         let change =

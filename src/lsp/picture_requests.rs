@@ -175,8 +175,8 @@ fn label(object: &Object) -> Cow<'_, str> {
 fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
     let shown = shown(params)?;
     let objects = &version.scene.objects;
-    // The first checkerboard is listed even if many objects precede it, since other objects usually
-    // stand on it. If the client selects objects one by one, only these are listed.
+    // The first checkerboard is listed even if it is not among the first objects, since other
+    // objects usually stand on it. It is not added if the client names the objects to list.
     let floor = match shown {
         ShownObjects::First(_) => objects.iter().position(is_board),
         ShownObjects::Only(_) => None,

@@ -31,9 +31,9 @@ pub struct SceneVersion {
     /// Span of each object's name or, if an object has no name, of its keyword.
     pub selections: Vec<Span>,
     worlds: VecDeque<(u32, World)>,
-    /// Copy of the scene's text in which all objects are removed except the object that was dragged
-    /// last, together with this object's index. The index is `None` if the camera was dragged. The
-    /// field is `None` before the first drag.
+    /// Index of the object that was dragged last, and a copy of the scene's text without the other
+    /// objects. The index is `None` if the camera was dragged, in which case the copy contains no
+    /// objects. The field is `None` before the first drag.
     alone: Option<(Option<usize>, Sources)>,
 }
 

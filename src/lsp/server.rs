@@ -58,8 +58,9 @@ pub struct Server {
     /// For each document whose picture was requested, the scene of the current version. The scene
     /// is `None` if this version has errors.
     scenes: HashMap<Uri, Option<SceneVersion>>,
-    /// Scene of the last version without errors of each text that has changed since. While the text
-    /// has errors, this scene is shown by frames whose request sets the parameter `last`.
+    /// For each text that has changed since its scene was built, the scene of the last version
+    /// without errors. While the text has errors, this scene is shown by frames whose request sets
+    /// the parameter `last`.
     last: HashMap<Uri, Option<SceneVersion>>,
     frames: Frames,
     log: fn(&str),
@@ -218,14 +219,14 @@ impl Server {
         Some(response(id, answer))
     }
 
-    /// Moves the scene of a text that has changed to the field `last`, and drops the text's frames.
-    /// Returns error responses to the requests for these frames. Does nothing if there is no scene,
-    /// for example because the text had errors.
+    /// Moves the scene of a text from the field `scenes` to the field `last`, because the text has
+    /// changed, and drops the text's frames. Returns error responses to the requests for these
+    /// frames. Does nothing if there is no scene, for example because the text had errors.
     fn outdate(&mut self, uri: &Uri) -> Vec<Message> {
         let Some(version @ Some(_)) = self.scenes.remove(uri) else {
-            // There is no scene if the text had errors before this change, or if no picture was
-            // requested since the change before. In these cases, its unfinished frames show the
-            // scene in `last`, so they are not dropped.
+            // There is no scene if the previous version of the text had errors, or if no picture of
+            // that version was requested. In these cases, unfinished frames of the text show the
+            // scene in `last`, which stays the same, so they are not dropped.
             return Vec::new();
         };
         self.last.insert(uri.clone(), version);
@@ -354,8 +355,8 @@ impl Server {
         Ok(outgoing)
     }
 
-    /// Cancels a waiting request or an unfinished frame. Returns the answer to the request; `None`
-    /// if there is no such request.
+    /// Cancels a waiting request or an unfinished frame. Returns the error response to the
+    /// cancelled request, or `None` if there is no such request.
     fn cancel(&mut self, params: &Value) -> Option<Message> {
         let id = params.get("id").cloned().unwrap_or_default();
         let id: RequestId = serde_json::from_value(id).ok()?;

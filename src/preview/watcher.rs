@@ -4,10 +4,10 @@
 //! renaming it, which removes the old file together with its watch. For a symbolic link, the folder
 //! of the link's target is watched as well.
 //!
-//! Events come in bursts, so the file is read after a short time without events. The crates that
-//! extend notify by such a delay are not used. One of them, notify-debouncer-mini, does not report
-//! the kind of an event, so that even reading the file would cause another reading. The other,
-//! notify-debouncer-full, mainly tracks renamed files, which is not needed.
+//! Events come in bursts, so the file is read after a short time without events. Two crates extend
+//! notify by such a delay, but neither is used. notify-debouncer-mini does not report the kind of
+//! an event; reading the file would itself cause an event and thus another reading.
+//! notify-debouncer-full mainly tracks renamed files, which is not needed.
 //!
 //! In addition, the file's time, length and identity are checked once a second. This detects
 //! changes that cause no event: in folders on other machines, in folders that were removed and
@@ -260,9 +260,9 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
     }
 
     /// Reads the file's content, and returns it with the time, length and identity that the file
-    /// had before. If the file is missing or empty, reads it again until it has content, but gives
-    /// up if no event arrives for [`ABSENCE`], or after [`LONGEST_ABSENCE`]. The very first reading
-    /// is not repeated.
+    /// had before. If the file is missing or empty, reads it again until it has content. Returns
+    /// the last result, even without content, if no event arrives for [`ABSENCE`], or after
+    /// [`LONGEST_ABSENCE`]. The very first reading is not repeated.
     fn read_when_there(&self) -> (Option<Stamp>, io::Result<Vec<u8>>) {
         let start = Instant::now();
         let mut end = start + ABSENCE;

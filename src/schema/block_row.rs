@@ -14,8 +14,8 @@ impl BlockRow {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// Returns the fields that people may mean by `written`, a word that is used for several fields
-    /// by mistake.
+    /// Returns the fields that people may mean by the word `written`. It is not the name of a
+    /// field, but people use it by mistake for each of these fields.
     pub fn fields_perhaps(&self, written: &str) -> impl Iterator<Item = &'static FieldRow> {
         let fields = self.fields.iter();
         fields.filter(move |field| is_among(written, field.perhaps))
@@ -48,8 +48,8 @@ impl BlockRow {
         self.nameless.iter().find(fits).copied().unwrap_or_default()
     }
 
-    /// Returns the [`Choice`] that a field belongs to: the alternative ways to express the same
-    /// thing. Returns `None` if the field belongs to no choice.
+    /// Returns the [`Choice`] that a field belongs to, such as the choice between the camera's
+    /// fields `lookat` and `direction`. Returns `None` if the field belongs to no choice.
     fn choice(&self, field: &str) -> Option<&'static Choice> {
         let holds = |choice: &&Choice| choice.ways.iter().any(|way| way.contains(&field));
         self.choices.iter().find(holds)

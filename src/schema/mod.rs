@@ -71,8 +71,8 @@ pub enum Predefined {
 }
 
 impl Predefined {
-    /// Returns words for a message that say what kind of thing the name stands for, such as "a
-    /// function".
+    /// Returns a noun for what a predefined name stands for, such as "a function", for use in a
+    /// message.
     pub fn noun(&self) -> &'static str {
         match self {
             Self::Function(_) => "a function",

@@ -8,8 +8,8 @@ use glam::DVec3;
 use super::types::{Type, Value};
 use crate::math::compare_half_turns;
 
-/// Alternative ways to express the same thing, each with its own fields. A block may use the fields
-/// of only one way.
+/// Alternative ways to express the same thing, each with its own fields, such as `lookat` and
+/// `direction` for the view of the camera. A block may use the fields of only one way.
 #[derive(Debug)]
 pub struct Choice {
     /// The alternative ways, each a list of fields. If a block uses a way, it must have all fields

@@ -5,7 +5,7 @@ use std::fmt;
 use crate::{math::Angle, numbers};
 
 /// Defines the enums of the language's types and values, and implements [`FieldValue`] for the Rust
-/// type of each.
+/// types that hold the values.
 ///
 /// Each line contains a variant's name, its Rust type, the type's name with an article, the plural,
 /// and the help that says what to write for a value of the type.

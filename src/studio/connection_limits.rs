@@ -44,8 +44,8 @@ const LIFETIME: Duration = Duration::from_secs(5);
 /// machine have set many cookies. 32 KiB leave room for these.
 const LONGEST: usize = 32 << 10;
 
-/// State of a connection. It is shared with the handler of a request, which lifts the limits of the
-/// connection.
+/// State of a connection, shared between the listener and the handler of the connection's requests.
+/// The handler lifts the limits when it has received a valid token.
 #[derive(Clone, Debug, Default)]
 pub struct Visitor(Arc<VisitorState>);
 

@@ -55,8 +55,8 @@ const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
 /// five times a second looks continuous enough, so more messages would have no visible effect.
 const PROGRESS: Duration = Duration::from_millis(200);
 
-/// Maximum time to wait for the page's answer to a close frame. It must be shorter than the 500 ms
-/// that the host, when it ends, waits for its connections.
+/// Maximum time to wait for the page's answer to a close frame. When the host ends, it waits 500 ms
+/// for its connections, so this time must be shorter.
 const FAREWELL: Duration = Duration::from_millis(200);
 
 /// Serves the page until it disconnects, its [`Pass`] is revoked, or the host ends. The tasks of
@@ -178,7 +178,8 @@ impl Conversation<'_> {
                 Err(_) if start.elapsed() > WRITE_TIMEOUT => return Err(Closing(None)),
                 Err(_) => {}
             }
-            // Even if a page receives nothing, the host and the page's session must be able to end.
+            // A page may receive nothing for a long time. Until the message is sent, it is
+            // therefore checked whether the host or the page's session ends.
             if let Some(code) = over(self.pass, self.ending) {
                 return Err(Closing(Some(code)));
             }

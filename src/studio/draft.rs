@@ -20,7 +20,7 @@ use crate::files;
 /// A function that reads a file up to the maximum length of a scene.
 pub type Read = fn(&Path) -> io::Result<Vec<u8>>;
 
-/// Time since its last change after which the file with the drafts of a scene is removed: 30 days.
+/// Time after which the file with the drafts of a scene is removed if it does not change: 30 days.
 /// After a shorter time, drafts could be lost too early. After a longer one, many forgotten texts
 /// would be stored.
 const LIFETIME: Duration = Duration::from_secs(30 * 24 * 60 * 60);
@@ -64,7 +64,7 @@ pub struct Drafts(Option<PathBuf>);
 
 impl Drafts {
     /// Returns the location of the drafts of the scene at `path`. For a new scene, `path` is the
-    /// folder in which it would be saved. Also removes the drafts of all scenes that are too old.
+    /// folder in which it would be saved. Also removes old drafts, of this and all other scenes.
     pub fn of(path: &Path) -> Self {
         let place = || {
             let folder = files::kept_folder("drafts")?;

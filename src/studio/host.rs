@@ -58,8 +58,8 @@ pub struct Host {
 struct Shared {
     access: Access,
     file: Mutex<SceneFile>,
-    /// Whether the host ends. Each connection holds a receiver of this value until it is closed, so
-    /// that the host can wait until no receiver is left.
+    /// Whether the host is about to end. Each connection holds a receiver of this value until it is
+    /// closed, so that the host can wait until no receiver is left.
     ending: watch::Sender<bool>,
 }
 

@@ -170,9 +170,10 @@ impl SceneFile {
     }
 
     /// Saves the text `new` if the file still contains `base`, the content that the page began to
-    /// edit. With another `name`, saves a new scene in the same folder. Fails if a file with this
-    /// name exists, unless a page has created it by an earlier save. Removes drafts with the text
-    /// `new`. Returns the version number of the content.
+    /// edit. If `name` is not the name of the file, saves the text as a new scene with this name in
+    /// the same folder. This fails if a file with this name exists, unless a page has created it by
+    /// an earlier save. Removes drafts with the text `new`. Returns the version number of the
+    /// content.
     ///
     /// # Errors
     ///

@@ -69,7 +69,8 @@ pub const BAD_NUMBER: Message = Message::new(["bad_number", "`{0}` is no number"
 pub const SPACED_UNIT: Message = Message::new(["spaced_unit", "a unit stands right behind its number", "no space between the two", "{0}"]).safe();
 
 /// Statements of other languages. A row holds the words that start such statements, separated by
-/// spaces; a plural noun that completes the message "the language has no …"; and the help.
+/// spaces; a plural noun that completes the message "the language has no …"; and the help text of
+/// that message.
 const STATEMENTS: &[[&str; 3]] = &[
     ["if else switch case", "conditions", "write what holds; `min` and `max` choose between two numbers"],
     ["for while loop repeat foreach", "loops", "an object is repeated by its head, as in `sphere for i < 8 { center (i, 1, 0) }`"],
@@ -86,8 +87,8 @@ pub fn statement(word: &str) -> Option<[&'static str; 2]> {
     STATEMENTS.iter().find(is_one).map(|row| [row[1], row[2]])
 }
 
-/// Addition to the help of [`FOREIGN_FILE`] for a file of a program with left-handed coordinates,
-/// whose z axis points away from the viewer.
+/// Sentence that is added to the help of [`FOREIGN_FILE`] if the program that made the file uses
+/// left-handed coordinates, i.e. if the z axis points away from the viewer.
 const LEFT_HANDED: &str = "; turn the sign of every z (`pinhole explain left_handed`)";
 
 /// Patterns that recognize files of other programs. A file matches a row if it begins as the row

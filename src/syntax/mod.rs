@@ -1,10 +1,10 @@
 //! Parses a text into a syntax tree.
 //!
 //! In: a text. Out: its syntax tree, its comments and its problems. Parsing always succeeds. pest,
-//! a parser generated from the grammar, reads the items that follow the grammar (`parser`). Any
-//! other item is read token by token by an error recovery (`tokens`, `recovery`), which reports one
-//! problem for each mistake and makes nodes of what it understands. Names are looked up only to
-//! choose between explanations of a mistake.
+//! a parser generated from the grammar, reads the items that follow the grammar (`parser`). Error
+//! recovery (`tokens`, `recovery`) reads any other item token by token. It reports one problem for
+//! each mistake and makes nodes for the parts that it can read. The parser does not check whether
+//! names exist; it looks them up only to choose between explanations of a mistake.
 
 #![cfg_attr(
     not(test),

@@ -6,8 +6,8 @@
 //! an item that pest rejects. It also reads an item that pest accepts but that was probably meant
 //! otherwise, such as a block with an unknown field.
 //!
-//! A text without mistakes can be split after each `}` and before each `let`: in such a text, every
-//! `}` ends a block and every `let` starts a definition.
+//! The text is split into pieces for pest after a `}` or before a `let`: in a text without
+//! mistakes, every `}` ends a block and every `let` starts a definition.
 
 use std::{
     ops::Range,
@@ -58,8 +58,8 @@ pub const STACK_BYTES: usize = 64 << 20;
 
 /// Minimum length, in bytes, of a value that is parsed on a thread with a stack of its own. Shorter
 /// values are parsed on the caller's stack: each nesting level needs at least one byte of text, so
-/// they have fewer than 32 levels. Most defaults of fields are that short and need no thread. With
-/// a much larger minimum, a value could overflow a small stack.
+/// they have fewer than 32 levels. With a much larger minimum, a value could overflow a small
+/// stack. With a smaller one, more threads would be started.
 const SHORT_VALUE_BYTES: usize = 32;
 
 /// Minimum number of bytes that pest, the generated parser, reads at a time. The actual number is
@@ -102,8 +102,8 @@ pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -
 }
 
 /// Reads the item at `at`, which does not follow the grammar, and returns its end. If the text at
-/// `at` can only continue the definition before it, removes the node of this definition and reads
-/// the definition again from its start.
+/// `at` may continue the definition before it ([`goes_on`]), and pest read that definition, removes
+/// the definition's node and reads the definition again from its start.
 fn recover_item(recovery: &mut Recovery<'_, '_>, text: &str, mut at: usize) -> usize {
     if let Some(Item::Definition(last)) = recovery.items.last()
         && last.span.start >= recovery.read_to
@@ -148,8 +148,9 @@ pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, V
     }
 }
 
-/// Runs `work` on a new thread with a stack of [`STACK_BYTES`], so that the maximum nesting does
-/// not overflow the stack in any build or on any thread. Passes on a panic of `work`.
+/// Runs `work` on a new thread with a stack of [`STACK_BYTES`] and returns its result. This stack
+/// suffices for the maximum nesting, whatever the build and the stack of the calling thread. Passes
+/// on a panic of `work`.
 fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
     thread::scope(|scope| {
         let builder = thread::Builder::new().stack_size(STACK_BYTES);
@@ -169,8 +170,8 @@ pub struct TreeBuilder<'w, 's> {
     text: &'s str,
     id: SourceId,
     words: &'w Vocabulary<'s>,
-    /// Byte offset, in the whole text, of the piece that pest reads. pest returns positions
-    /// relative to the start of this piece.
+    /// Byte offset, in the whole text, of the piece that is parsed. The text is parsed in pieces,
+    /// and pest counts offsets from the start of a piece.
     base: usize,
     /// Whether the last item follows the grammar but has an unknown field or function, so that
     /// error recovery should read it again.
@@ -190,9 +191,9 @@ impl<'w, 's> TreeBuilder<'w, 's> {
     }
 
     /// Parses the items in `range` with pest, and adds their nodes to `recovery`. An item that was
-    /// probably meant otherwise is read again by error recovery. If the two readings of an item end
-    /// at different offsets, stops after this item. Returns the end of the last item that was read,
-    /// and `false` if the readings of this item differ in their end.
+    /// probably meant otherwise is read again by error recovery. If error recovery ends such an
+    /// item at another offset than pest, reading stops after the item. Returns the end of the last
+    /// item that was read, and `false` if reading stopped for this reason.
     pub fn items(&mut self, range: Range<usize>, recovery: &mut Recovery<'_, 's>) -> (usize, bool) {
         self.base = range.start;
         let slice = self.text.get(range.clone()).unwrap_or_default();
@@ -205,9 +206,9 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 Rule::block => Item::Block(self.block(pair)),
                 _ => continue,
             };
-            // If `let a = 2 pi` is followed by `sphere {`, pest reads `pi sphere {` as a block of
-            // the kind `pi` with the name `sphere`. The actual kind is `sphere`, so reading stops
-            // before `pi`, and recovery reports the mistake.
+            // In `let a = 2 pi`, followed by `sphere {`, pest reads `pi sphere {` as a block of the
+            // kind `pi` with the name `sphere`. The actual kind is `sphere`, so reading stops
+            // before `pi`, and recovery reports that `2 pi` lacks its operator.
             if let Item::Block(block) = &item
                 && let (Some(kind), Some(name)) = (block.kind, block.name)
                 && self.words.is_kind(name.text)
@@ -216,8 +217,9 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 return (end, true);
             }
             end = item.span().end;
-            // An item is also read again if it contains `--`, because that may start a comment of
-            // another language. Long items are not searched for it.
+            // Error recovery reads an item again if it is doubtful or contains `--`, which may
+            // start a comment of another language. An item of at least [`CHUNK_BYTES`] is not
+            // searched for `--`.
             let written = self.written(item.span());
             if self.doubtful || (written.len() < CHUNK_BYTES && written.contains("--")) {
                 match recovery.item_as_meant(start) {

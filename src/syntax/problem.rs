@@ -26,8 +26,8 @@ impl Message {
         }
     }
 
-    /// Marks fixes of the problem as safe: a fix keeps everything that was written, and only one
-    /// meaning is possible.
+    /// Marks fixes of the problem as safe. This requires that each fix keeps everything that was
+    /// written and that only one meaning of the text is plausible.
     pub const fn safe(self) -> Self {
         self.safe_if(true)
     }
@@ -128,8 +128,8 @@ pub fn merge_sign_reports(problems: &mut Vec<Diagnostic>) {
     *problems = kept;
 }
 
-/// Shortens a text for a message: joins its lines with spaces, and cuts it after 40 characters with
-/// `…`.
+/// Shortens a text for a message: joins its lines with spaces, and replaces everything after the
+/// first 40 characters by `…`.
 pub fn shorten(written: &str) -> String {
     const LONGEST: usize = 40;
     let mut short = String::new();

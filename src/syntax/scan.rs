@@ -17,9 +17,9 @@ use crate::{
     source::{SourceId, Span},
 };
 
-/// Minimum distance, in bytes, between two recorded places where a text can be split for parsing. A
-/// nearer place is left out, which saves memory. With a much larger distance, the parts that are
-/// parsed at a time would be much longer than [`CHUNK_BYTES`](super::parser::CHUNK_BYTES), their
+/// Minimum distance, in bytes, between two recorded places where a text can be split for parsing.
+/// Places between them are left out, which saves memory. With a much larger distance, the text
+/// would be parsed in pieces much longer than [`CHUNK_BYTES`](super::parser::CHUNK_BYTES), their
 /// minimum length.
 const SPLIT_SPACING_BYTES: usize = 256;
 
@@ -149,8 +149,8 @@ impl Scan {
         let hides = |place: &Span| text[place.start..].starts_with('\r');
         parsed.is_cut |= self.odd_spaces.iter().any(hides);
         if let Some(open) = self.open_comment(text) {
-            // An unclosed comment hides the rest of the text. Problems that only the hidden text
-            // causes are dropped.
+            // An unclosed comment hides the rest of the text. Problems that may only arise because
+            // this text is hidden are dropped.
             parsed.problems.retain(|problem| {
                 let first = problem.labels.first().map_or(0, |label| label.span.end);
                 problem.code != "pinhole::unclosed_block" && first < open.start
@@ -176,8 +176,8 @@ impl Scan {
                 let edits = places.iter().map(|place| Edit::new(*place, text));
                 Fix::new(title, edits)
             };
-            // Two words may join if a character of zero width between them is removed, so that
-            // removal is not safe.
+            // If a character of zero width is removed from between two words, they become one word.
+            // Such a removal is not safe.
             let has_width = sort.chars().all(char::is_whitespace);
             let joins = |place: &Span| !Edit::remove_in(*place, text).text.is_empty();
             let is_safe = has_width || !places.iter().any(joins);
@@ -189,8 +189,8 @@ impl Scan {
                 let said = say::ODD_SPACE.safe_if(is_safe);
                 said.at(at, &words, all("write plain spaces", " "))
             };
-            // A character of zero width rarely separates words on purpose, so its removal is the
-            // first fix.
+            // A character of zero width rarely separates words on purpose, so the fix that removes
+            // it is offered before the one that writes a space.
             if !has_width {
                 let applicability = Applicability::safe_if(is_safe);
                 let away = all("take it away", "").with_applicability(applicability);
@@ -198,7 +198,7 @@ impl Scan {
             }
             if self.odd_spaces.len() == MOST_PROBLEMS {
                 // If the maximum number of places is recorded, the text may contain more. A fix of
-                // only the recorded places would be incomplete.
+                // only the recorded places would be incomplete, so no fix is offered.
                 found.fixes.clear();
             }
             problems.push(found);

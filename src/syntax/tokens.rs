@@ -103,8 +103,8 @@ impl<'s> Lexer<'s> {
         }
     }
 
-    /// Returns kind and end of the token at `start`, which begins with a control character or a
-    /// non-ASCII character.
+    /// Returns the kind and the end of the token at `start`, which begins with a control character
+    /// or a non-ASCII character.
     fn other(&self, start: usize) -> (TokenKind, usize) {
         let first = self.rest(start).chars().next().unwrap_or(' ');
         match first {
@@ -152,9 +152,9 @@ impl<'s> Lexer<'s> {
         end
     }
 
-    /// Returns kind and end of the quoted text at `start`. If no closing mark follows before the
-    /// end of the line or before a comment, the token is only the opening mark and the word
-    /// directly after it.
+    /// Returns the kind and the end of the quoted text at `start`. If no closing mark follows
+    /// before the end of the line or before a comment, the token is only the opening mark and the
+    /// word directly after it.
     fn quoted(&self, start: usize) -> (TokenKind, usize) {
         let mut characters = self.rest(start).char_indices().peekable();
         let first = characters.next().map_or('"', |(_, first)| first);

@@ -228,7 +228,7 @@ pub enum ValueKind<'s> {
     Call(Box<Call<'s>>),
     /// A value in parentheses: `(VALUE)`.
     Parentheses(Box<Value<'s>>),
-    /// A list in parentheses, `(VALUE, VALUE, …)`, with at least two values, or `()`.
+    /// A list in parentheses: `(VALUE, VALUE, …)` with at least two values, or the empty list `()`.
     Tuple(Vec<Element<'s>>),
     /// A negation: `-VALUE`.
     Negation {

@@ -118,15 +118,15 @@ impl<'s> Vocabulary<'s> {
         name == "pi" || self.lets().get(name).copied().unwrap_or(false)
     }
 
-    /// Returns whether a name is a function of another language that makes a vector or a colour. A
-    /// name that the text defines is not.
+    /// Returns whether a name is a function of another language that makes a vector or a colour.
+    /// Returns `false` for a name that the text defines.
     pub fn is_foreign_function(&self, name: &str) -> bool {
         FOREIGN_FUNCTIONS.split(' ').any(|word| word == name) && !self.is_let(name)
     }
 
     /// Returns whether a field that follows the grammar was perhaps meant otherwise. This is the
     /// case if the block `kind` has no such field, if the value is the name of another field, or if
-    /// the field requires the name of a method and its value is not a name.
+    /// the field requires the name of a sampling method and its value is not a name.
     pub fn is_doubtful(&self, kind: &str, field: &Field<'_>) -> bool {
         let row = schema::block_or_nearest(kind);
         let takes = row.and_then(|row| Some(row.field(field.name.text)?.takes));

@@ -1,5 +1,5 @@
-//! Tests of cancellation. Each function that reads a scene ends soon after it is cancelled, even if
-//! the text is long. So does the preparation of the tracer for a scene with many objects.
+//! Tests of cancellation. Reading a scene ends soon after it is cancelled, even if the text is
+//! long. The preparation of the tracer also ends soon, even if the scene has many objects.
 
 use std::{
     fmt::Write,
@@ -24,7 +24,7 @@ use crate::scenes::{read, sources};
 
 const CAMERA: &str = "camera { eye (0, 0, 5)  lookat (0, 0, 0) }\n";
 
-/// Returns the text of a scene with `count` spheres. Each sphere takes about 55 bytes.
+/// Returns the text of a scene with `count` spheres. Each sphere is written with about 55 bytes.
 pub fn spheres(count: usize) -> String {
     let mut text = CAMERA.to_owned();
     for index in 0..count {
@@ -37,10 +37,9 @@ pub fn spheres(count: usize) -> String {
     text
 }
 
-/// Measures the time that `work` takes. Then runs it again and cancels it from another thread, once
-/// after 1/16 and once after 1/4 of that time. Asserts that each of these runs then ends within
-/// half of the measured time. Other work on the machine may delay a run, so one success in five
-/// tries is enough.
+/// Asserts that `work` stops soon after it is cancelled from another thread. Cancels it after 1/16
+/// of its usual time, and in a second run after 1/4. Each run must then end within half of the
+/// usual time. Other work on the machine may delay a run, so one success in five tries is enough.
 #[track_caller]
 fn assert_stops_early<T>(what: &str, work: impl Fn(&AtomicBool) -> Result<T, Cancelled> + Sync) {
     for share in [16, 4] {

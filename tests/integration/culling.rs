@@ -142,9 +142,9 @@ fn culling_is_exact_for_scenes_full_of_ties(effort: Effort) {
     }
 }
 
-/// Renders overlapping triangles, half of them in a tilted plane and half in the board's plane. One
-/// scene has more triangles than the tracer's cache can hold. The cache keeps objects converted to
-/// a number type more precise than `f64`.
+/// Renders thousands of overlapping triangles. Half of them lie in a tilted plane, and half in the
+/// plane of the checkerboard. One of the scenes has more triangles than the tracer can cache in its
+/// type for precise numbers.
 #[test]
 fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     let mut random = Random::new(141);
@@ -171,8 +171,9 @@ fn culling_is_exact_for_thousands_of_coplanar_triangles() {
         }
     }
     few += "checkerboard {}\n";
-    // The text `many` contains each triangle twice, with different normals and colours. Only the
-    // first of two equal triangles is visible, so both scenes must give the same picture.
+    // `many` becomes the scene `few`, followed by a copy of each triangle with another colour and a
+    // longer normal. The copies are hidden, because only the first of coinciding triangles is
+    // visible. So both scenes must give the same picture.
     many.insert_str(0, &few);
     let [few, many] = [&few, &many].map(|text| read(text));
     assert!(compare(&few, Method::Jittered, Count::PerPixel(4)) > 100);

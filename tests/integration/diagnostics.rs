@@ -260,9 +260,9 @@ fn a_text_in_utf_16_is_one_mistake() {
     }
 }
 
-/// In a narrow terminal, excerpts of the scene are cut around the label, and all other lines wrap
-/// at words. A line may be wider than the terminal only if it contains a very long word.
-/// Diagnostics with several labels are not tested, because their excerpts may be wider too.
+/// In a narrow terminal, an excerpt of the scene shows only the surroundings of the label, and all
+/// other lines wrap at words. A line may be wider than the terminal only if it contains a very long
+/// word. Diagnostics with several labels are not tested, because their excerpts may be wider too.
 #[test]
 fn reports_fit_into_the_terminal() {
     let mut cut = 0;

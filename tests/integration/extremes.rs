@@ -1,7 +1,7 @@
 //! Tests of scenes with numbers of any magnitude. Every valid scene is rendered, and every channel
 //! of its picture is finite and from 0 to 1.
 //!
-//! A normal run renders 150 scenes, or 1200 with the ignored tests.
+//! A normal run renders 150 scenes. The ignored, exhaustive test renders 1200.
 //! `PINHOLE_SCENES=10000000 cargo test extremes` renders ten million scenes, which takes hours.
 
 use std::num::NonZero;
@@ -52,9 +52,9 @@ fn assert_light(film: &Film, text: &str) {
 }
 
 /// Renders a scene with culling, sample by sample, and exactly, and compares the three pictures. If
-/// `is_decided` is false, the samples are not compared with the exact picture. A scene is not
-/// decided if it may have a distant checkerboard of such small squares that rounding decides which
-/// square a sample hits.
+/// `is_decided` is false, the samples are not compared with the exact picture. This is needed if
+/// the squares of a distant checkerboard may be so small that the rounding of a hit decides its
+/// colour.
 fn render_in_each_way(scene: &Scene, text: &str, is_decided: bool) {
     let control = one_thread();
     let (world, sampling, whole) = (World::new(scene), sampling(scene), whole(scene));

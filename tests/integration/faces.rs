@@ -119,8 +119,9 @@ fn a_box_with_face_colours_looks_like_triangles_of_its_faces() {
     }
 }
 
-/// Asserts that hits refer to boxes by their indices in the file: each hit must have the colour of
-/// a face of its box, and the visible hit must belong to the object that the picture shows.
+/// Asserts that the tracer refers to objects by their indices in the file. The visible hit on a ray
+/// must belong to the object that the picture shows there. A hit on a box must have the colour of
+/// one of this box's faces.
 fn objects_keep_their_places(scene: &Scene) {
     let world = World::new(scene);
     for (x, y) in [(18, 11), (3, 20), (30, 5)] {

@@ -2,7 +2,8 @@
 //! arguments.
 //!
 //! `PINHOLE_BLESS=1 cargo test figure` writes the current figures into `tests/figures` and
-//! `docs/handout`. Look at them, light, dark and small, before you commit them.
+//! `docs/handout`. Before you commit them, look at them on a light and on a dark background, and at
+//! a small size.
 
 use std::path::Path;
 
@@ -164,8 +165,8 @@ fn a_figure_says_what_it_draws() {
 
 #[test]
 fn the_figure_of_the_camera_always_has_the_object_that_the_ray_meets() {
-    // The figure draws at most 60 objects, and the triangle is listed after more than 60. It must
-    // be drawn all the same, because the ray meets it. One sphere is behind the eye.
+    // The figure draws at most 60 objects. The triangle is listed after 101 spheres, but must be
+    // drawn, because the ray meets it. One of the spheres is behind the eye.
     let scene = read(
         "camera { eye (0, 1, 5) lookat (0, 1, 0) } sphere Behind { center (0, 1, 8) radius 0.5 }
 sphere for i < 100 { center (i / 20 - 2.5, 3, 0) radius 0.1 } triangle Sail { centroid (0, 1, 0) normal (0, 0, 1) color red }",
@@ -179,7 +180,7 @@ sphere for i < 100 { center (i / 20 - 2.5, 3, 0) radius 0.1 } triangle Sail { ce
     ] {
         assert!(texts.iter().any(|it| it == text), "{text}: {texts:?}");
     }
-    // The sail is drawn twice: in space, and on the window.
+    // The triangle `Sail` is drawn twice: in space, and as it appears in the picture.
     assert_eq!(figure.matches("fill:#ff0000").count(), 2);
 }
 

@@ -16,8 +16,8 @@ pub enum Numbers {
     /// surfaces; rays lie in planes and pass through corners and along edges; faces lie in common
     /// planes, or at the near and far depths.
     MultiplesOf(f64),
-    /// Whole, round and other numbers. The value is the percentage of the numbers that may have any
-    /// magnitude.
+    /// Random real numbers. Some are rounded to integers or to multiples of 1/8, so that
+    /// coincidences occur. The value is the percentage of the numbers that may have any magnitude.
     Wild(u64),
 }
 
@@ -133,10 +133,10 @@ impl Generator {
             ),
             3 | 4 => {
                 let [a, b] = [(); 2].map(|()| self.length(2.5));
-                // In the first two cases, one side is as long as the other two together: a triangle
-                // without area, which is the limit of the allowed triangles. The vertices can have
-                // rational coordinates only in the last case, where the height above the side 3 is
-                // 2.
+                // The first two kinds of triangles have no area, because one side is as long as the
+                // other two together. This is the limit of what is allowed. The last kind is
+                // isosceles with the height 2 above the side 3, so its vertices can have rational
+                // coordinates.
                 let sides = match self.random.below(4) {
                     0 => [a, b, a + b],
                     1 => [a, b, (a - b).abs()],

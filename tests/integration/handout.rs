@@ -1,5 +1,5 @@
-//! Compares the card of the handout, a short reference, with the tables of the language, and the
-//! HTML page of the handout with its files.
+//! Compares the handout with its sources: the card, a short reference, with the tables of the
+//! language, and the HTML page with the files of the handout.
 
 use std::{
     fs,

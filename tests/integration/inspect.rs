@@ -316,8 +316,8 @@ fn inspect_lists_100_objects_and_summarizes_the_rest() {
         100
     );
     assert_eq!(json["rest"]["outside"], 1000);
-    // The summary of all objects after the hundredth must give the same counts as these objects
-    // themselves.
+    // The summary of all objects after the hundredth must state the same numbers of seen and
+    // outside objects as the list of these objects.
     let picture = "image { width 96 height 54 } camera { eye (0, 0, 9) lookat (0, 0, 0) } ";
     let ball =
         |z: &str| format!("sphere for i < 15, j < 10 {{ center (i - 5, j - 4, {z}) radius 0.3 }}");

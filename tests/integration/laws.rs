@@ -22,7 +22,8 @@ use crate::{
     tracer::is_upright,
 };
 
-/// Generates the scenes on which a law is tested. They have 9 samples per pixel by `method`.
+/// Generates the scenes on which a law is tested. Their sampling method is `method`, with 9 samples
+/// per pixel.
 fn worlds(seed: u64, method: Method) -> impl Iterator<Item = Scene> {
     let scenes = generated(Numbers::MultiplesOf(1.0 / 64.0), [24, 24], seed);
     let scenes = scenes.map(move |(_, scene)| {
@@ -72,7 +73,7 @@ fn centered(shape: &mut Shape) -> Option<&mut CenteredTriangle> {
 }
 
 /// Maps all points of a scene by `place` and all directions by `direction`, and multiplies all
-/// lengths by the last argument.
+/// lengths by `scale`.
 fn mapped(
     scene: &Scene,
     place: impl Fn(DVec3) -> DVec3,
@@ -173,12 +174,13 @@ fn assert_pictures_agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32;
 #[test]
 fn quarter_turns_about_y_swap_the_boards_colours() {
     for (world, turns) in worlds(1, Method::MultiJittered).zip([1, 2, 3].into_iter().cycle()) {
-        // A quarter turn moves the square of the board with the indices (i, j) to (j, −1 − i).
+        // A quarter turn moves the square of the board with the indices (i, j) to (j, −1 − i). The
+        // sum of the indices then changes between even and odd, so the two colours are swapped.
         let turn = |v: DVec3| (0..turns).fold(v, |v, _| dvec3(v.z, v.y, -v.x));
         let mut after = mapped(&world, turn, turn, 1.0);
-        // If the normal of a triangle is vertical, its base is parallel to the x axis, whatever the
-        // direction of the normal is. A turn of the normal does not turn such a triangle, so its
-        // spin is changed instead.
+        // If the normal of a triangle is vertical, the base is by definition parallel to the x
+        // axis. A turn about y does not change such a normal, so the triangle's spin is changed
+        // instead.
         for triangle in shapes(&mut after).filter_map(centered) {
             if triangle.normal.xz() == DVec2::ZERO {
                 let degrees = 90.0 * f64::from(turns);

@@ -29,8 +29,8 @@ const SCENES: [&str; 5] = [
     "inside_the_sphere",
 ];
 
-/// Name of the environment variable that tells the test binary that it runs in QEMU. Its value is
-/// the folder into which the binary then only writes its pictures, without comparing any.
+/// Name of the environment variable that is set if the test binary runs in QEMU. Its value is a
+/// folder. The binary then writes its pictures into this folder and compares nothing.
 const FOLDER: &str = "PINHOLE_TEST_PICTURES";
 
 /// Compares the pictures with those that the same test binary draws in QEMU. One process draws all

@@ -25,7 +25,7 @@ use crate::{
 /// Generator of the texts of random objects. The objects often have points in common.
 struct Text<'r> {
     random: &'r mut Random,
-    /// Points of the objects so far: vertices, centres, and points on surfaces.
+    /// Points of all objects written so far: vertices, centres, and points on surfaces.
     points: Vec<DVec3>,
     /// On average, one in `wild` numbers may have any magnitude; none if `wild` is 0.
     wild: u64,
@@ -252,8 +252,8 @@ fn assert_parts_agree(scene: &Scene, random: &mut Random, text: &str) -> Rendere
     picture
 }
 
-/// Asserts that the area `part` of the picture `one` has the same bits as the picture `crop`, both
-/// in its pixels and in their error bounds.
+/// Asserts that the picture `crop` has the same bits as the area `part` of the picture `one`, both
+/// in its pixels and in its error bounds.
 #[track_caller]
 fn assert_same_bits(one: &Rendered, part: Area, crop: &Rendered, what: &str) {
     let numbers = |picture: &Rendered, x, y| {

@@ -85,8 +85,8 @@ fn the_commands_print_what_the_documents_say() {
     }
 }
 
-/// Asserts that the pictures that a document shows are those that its commands make. A picture that
-/// no command makes, such as one of another document, is passed over.
+/// Asserts that the commands in a document make exactly the pictures that the document shows.
+/// Ignores a shown picture that no command makes, such as a picture of another document.
 fn assert_pictures(beside: &Path, text: &str, folder: &Folder) {
     let shown = text.split("![").skip(1).filter_map(|image| {
         let (_, rest) = image.split_once("](")?;

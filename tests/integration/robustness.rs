@@ -47,9 +47,8 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let json = diagnostic::json_lines(written, &sources);
     assert_eq!(json.lines().count(), written.len());
     let time = start.elapsed();
-    // With optimization, reading takes a second on an idle machine, and at most two seconds, the
-    // limit, on a busy one. Without optimization, it takes up to four seconds; the limit is ten, in
-    // case the machine is busy.
+    // The limit is two seconds with optimization and ten seconds without. On an idle machine,
+    // reading takes about half as long. The rest is for busy machines.
     let bound = Duration::from_secs(if cfg!(debug_assertions) { 10 } else { 2 });
     assert!(time < bound, "{time:?} for {length} bytes");
     for drawing in [Drawing::Unicode, Drawing::Narrated] {
@@ -181,7 +180,7 @@ fn reports_stop_at_the_maximum_number_of_problems() {
         let is_told = |it: &Diagnostic| it.message.contains("the others are left out");
         assert!(found.iter().any(is_told), "{text:.40}");
     }
-    // Correct text before the omitted mistakes must not be reported as wrong.
+    // This block has more mistakes than are reported. Its correct fields must not be reported.
     let signs = format!(
         "{CAMERA}sphere {{ center (0, 1, 0) {} radius 1 }}",
         many(", ")
@@ -218,7 +217,7 @@ fn deeply_nested_values_are_refused_and_long_sums_accepted() {
     for value in deep.into_iter().chain(quotes).chain([few_quotes]) {
         assert!(!read(format!("{CAMERA} let a = {value}")));
     }
-    // Long sums and long products do not count as deep nesting.
+    // Long sums and long products are not nested deeply, so they are accepted.
     for sign in [" + ", " * "] {
         let long = vec!["1"; 100_000].join(sign);
         assert!(read(format!("{CAMERA} let a = {long}")), "{sign}");

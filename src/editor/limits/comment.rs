@@ -45,8 +45,8 @@ pub fn range_behind(behind: &str) -> Option<&str> {
 }
 
 /// Parses the range of a slider, such as `1:5` or `1:0.1:5`. The first and the last number are the
-/// ends of the range, the larger or the smaller first. If there are three numbers, the middle one
-/// is the step. The numbers are converted to `unit`, the unit of the slider's value.
+/// ends of the range, in either order. If there are three numbers, the middle one is the step. The
+/// numbers are converted to `unit`, the unit of the slider's value.
 ///
 /// # Errors
 ///

@@ -1,9 +1,9 @@
 //! Computes the limits of a slider for a number in the text.
 //!
 //! If a comment after the definition gives a range, that range is used. Otherwise, the slider
-//! extends some steps to both sides of the number, within the values that are allowed in the fields
-//! that use the number. If an end of the slider would cause a new error in the text, the end is
-//! moved towards the number.
+//! extends some steps to both sides of the number. It does not extend beyond the values that are
+//! allowed for a field, if the number is the value of that field. If an end of the slider would
+//! cause a new error in the text, the end is moved towards the number.
 
 mod comment;
 mod literal;
@@ -170,8 +170,8 @@ fn tried(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> 
     let reach = middle.abs().max(steps * step);
     let ends = [middle - reach, middle + reach].map(|end| bounded(rounded(end, step)));
     let valid = ends.map(|end| trials.last_right(literal, end, step, is_count));
-    // If even the first step in either direction causes an error, the slider keeps its ends.
-    // Otherwise its range would have length 0.
+    // If even the first step in either direction causes an error, the ends before the search are
+    // used. Otherwise, both ends would be the current number, and the slider could not move.
     let valid = if valid == [None, None] {
         ends
     } else {
@@ -200,8 +200,8 @@ impl Limits {
     }
 }
 
-/// Range of the values that the language allows for a number in certain fields. For an angle, the
-/// range is in degrees or in radians, as the number is written.
+/// Range of the values that the language allows for a number in the fields that use it. For an
+/// angle, the range is in degrees or in radians, as the number is written.
 #[derive(Clone, Copy, Debug)]
 struct Bounds {
     least: f64,

@@ -82,12 +82,13 @@ impl<'a, 's> Trials<'a, 's> {
     }
 
     /// Searches the numbers from the literal towards `end`, in steps of `step`, for the last valid
-    /// one. A number is valid if the text has no new error with it. Uses bisection. Returns `end`
-    /// if it is valid or cannot be tried. Returns `None` if even the first step causes an error.
+    /// one. A number is valid if the text with this number has no new error. Uses bisection.
+    /// Returns `end` if it is valid or cannot be tried. Returns `None` if even the first step
+    /// causes an error.
     ///
     /// If the budget for trials runs out during the search, returns the last number found to be
-    /// valid, or `end` if none was found. If valid and invalid numbers alternate, returns one of
-    /// the valid numbers whose next number is invalid.
+    /// valid, or `end` if none was found. If valid and invalid numbers alternate, returns a valid
+    /// number that is followed by an invalid one.
     pub fn last_right(
         &mut self,
         literal: &Literal,
@@ -131,9 +132,10 @@ fn errors(analysis: &Analysis<'_>) -> usize {
 mod tests {
     use super::*;
 
-    /// Searches for the greatest valid n up to 14 in two texts. With n = 14, the second text would
-    /// contain 14^5 objects, half a million, because each of its five indices has the count n. This
-    /// trial is too expensive and is not made, so the budget `left` stays at [`BYTES`].
+    /// Searches two texts for the greatest valid n up to 14. In the first text, 14 is tried. The
+    /// second text has five indices with the count n, so n = 14 would make 14^5 objects, half a
+    /// million. This trial is too expensive and is not made, so the budget `left` stays at
+    /// [`BYTES`].
     #[test]
     fn a_count_is_not_tried_where_it_would_make_very_many_objects() {
         let heads = [

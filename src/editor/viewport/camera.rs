@@ -24,8 +24,9 @@ const POLE: f64 = PI / 180.0;
 const ZOOM: f64 = 4.0;
 
 /// Returns the distance from the eye to the pivot, i.e. the point about which the camera moves. The
-/// pivot is `lookat` or, if that is not given, the point that is visible in the middle of the
-/// picture, or else the centre of the nearest object. Returns 1 if there is none of these.
+/// pivot is `lookat`, if the camera has one. Otherwise, it is the point in space that is visible in
+/// the middle of the picture. If only the background is visible there, it is the centre of the
+/// object nearest to the eye. Returns 1 if there is no such object.
 pub fn distance(scene: &Scene) -> f64 {
     let camera = &scene.camera;
     let from_eye = |point: DVec3| unit(point - camera.eye).1;

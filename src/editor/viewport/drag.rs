@@ -46,7 +46,7 @@ pub struct Drag<'a> {
     pub along: Option<Along>,
     /// Maximum distance in the picture, in pixels, between neighbouring positions of the handle on
     /// a grid. `None` if the drag does not snap to a grid. The changed numbers become multiples of
-    /// the largest power of ten with which this distance is not exceeded.
+    /// a power of ten, which is as large as this distance permits.
     pub step: Option<f64>,
 }
 
@@ -167,9 +167,10 @@ pub fn drag(
         .and_then(|step| view.snapped(current, &changes, step));
     let tolerance = snapped.map_or(TOLERANCE, |(_, step)| step);
     let first = snapped.map_or(first, |(decimals, _)| decimals);
-    // Returns whether all fields keep their exact values, except the fields that the drag changes.
-    // This is required only for a drag on a grid, whose tolerance is a whole step of the grid. Such
-    // a tolerance would hide a small change of another field whose value uses the same number.
+    // Returns whether all fields except those that the drag changes keep their exact values. This
+    // is checked only for a drag on a grid, because its tolerance is a whole step of the grid. A
+    // smaller change of another field, which may use the same number of the text, would be within
+    // that tolerance.
     let keeps_others = |found: FieldOwner| {
         let mut fields = block.fields.iter().map(|field| field.name.text);
         let is_meant = |field: &str| changes.iter().any(|change| change.name == field);
@@ -387,10 +388,10 @@ struct DragView<'a> {
 }
 
 impl DragView<'_> {
-    /// Returns the number of decimals to which the drag rounds numbers, together with the unchanged
-    /// `step`, in pixels. It is the smallest number of decimals for which one unit in the last
-    /// decimal moves the handle by at most `step`. Returns `None` for the camera, or if 12 decimals
-    /// do not suffice.
+    /// Returns the number of decimals to which the drag rounds numbers, and the tolerance of the
+    /// drag in pixels, which is `step`. The number of decimals is the smallest for which one unit
+    /// in the last decimal moves the handle by at most `step`. Returns `None` for the camera, or if
+    /// 12 decimals do not suffice.
     fn snapped(&self, owner: FieldOwner, changes: &[FieldChange], step: f64) -> Option<(i32, f64)> {
         let held = |owner: FieldOwner| {
             let mut marks = self.marks(owner).into_iter();
@@ -414,6 +415,7 @@ impl DragView<'_> {
     /// of the picture are ignored, except the dragged one.
     fn agree(&self, ideal: FieldOwner, found: FieldOwner, tolerance: f64) -> bool {
         // A length that was rounded to few digits may have become 0, which the language forbids.
+        // Such a result is rejected even if it looks alike.
         if ideal.is_possible() && !found.is_possible() {
             return false;
         }

@@ -83,9 +83,9 @@ pub fn changes(block: &Block<'_>, current: FieldOwner, ideal: FieldOwner) -> Vec
 /// of a box changes, its `center` moves by half as much in either direction (±1/2).
 const RATIOS: [f64; 3] = [1.0, 0.5, -0.5];
 
-/// Tolerance for the equality of two changes, relative to the largest change on the axis. It must
-/// exceed rounding errors, which are about 1e-16, and be far below the smallest of [`RATIOS`], 1/2.
-/// Any value in between works.
+/// Tolerance with which the ratio of two changes is compared with [`RATIOS`], relative to the
+/// larger change. It must exceed rounding errors, which are about 1e-16, and be far below the
+/// smallest of these ratios, 1/2. Any value in between works.
 const SAME: f64 = 1e-6;
 
 /// The way in which the numbers that a drag changes are rounded.
@@ -158,8 +158,9 @@ impl DecimalRounding {
     fn number(&self, from: f64, by: f64) -> f64 {
         let decimals = self.decimals;
         if self.exact.contains(&by.abs()) {
-            // The amount was already rounded to `decimals` or, for the ratio 1/2 in [`RATIOS`], to
-            // one decimal more. So the sum keeps all these decimals, and all decimals of `from`.
+            // The amount was rounded to `decimals` already. If its ratio in [`RATIOS`] is 1/2, it
+            // has one decimal more. So the sum keeps `decimals` + 1 decimals, and all decimals of
+            // `from`.
             let [own, more] = [decimals_of(from), decimals.saturating_add(1)];
             return round(from + by, own.max(more));
         }

@@ -21,8 +21,8 @@ use crate::{
 /// smaller tolerance would need numbers with more digits in the text.
 pub const TOLERANCE: f64 = 0.5;
 
-/// Message about a drag that is refused because its numbers would be too large for the scene, or
-/// for `f64` to place the handle accurately.
+/// Message about a drag that is refused. The new numbers would be too large for a scene, or too
+/// large for `f64` to place the handle accurately.
 pub const TOO_FAR: &str = "that is too far away";
 
 /// Name of a handle, and its position in space. The position is `None` if the eye cannot see the
@@ -341,7 +341,8 @@ fn radius(sphere: &Sphere, to: DVec2, projection: &Projection) -> Result<f64, St
     let (axis, distance) = unit(sphere.center - projection.eye);
     let (ray, _) = unit(projection.ray(to));
     let radius = ray.cross(axis).length() * distance;
-    // The silhouette must be in front of the eye, and the eye outside of the sphere.
+    // A radius is returned only if the silhouette is in front of the eye and the eye is outside of
+    // the sphere.
     if ray.dot(axis) > 0.0 && radius < distance {
         Ok(radius)
     } else {

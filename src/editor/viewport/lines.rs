@@ -69,7 +69,8 @@ impl Projection {
         //
         //   ahead.y + pitch · (right.y · (x − w/2) − top.y · (y − h/2)).
         //
-        // On the returned line, this height is `height`.
+        // Here `ahead`, `right` and `top` are the camera's axes, and `pitch` is the side of a pixel
+        // at depth 1. On the returned line, this height is `height`.
         let normal = DVec2::new(self.right.y, -self.top.y) * self.pitch;
         let middle = self.size / 2.0;
         // `foot` is the line's point nearest to the middle of the picture, and `along` is the

@@ -31,8 +31,8 @@ pub(in crate::exact) struct BoardPixel {
     pub candidate: VisibilityCandidate,
 }
 
-/// Queues of checkerboard pixels. In one queue, all pixels are crossed by the same numbers of lines
-/// of the board's two families, those between columns and those between rows of squares.
+/// Queues of checkerboard pixels. All pixels of one queue are crossed by the same number of lines
+/// between the board's columns, and by the same number of lines between its rows.
 #[derive(Debug)]
 pub(in crate::exact) struct BoardBatches {
     batches: Vec<Batch>,
@@ -97,8 +97,9 @@ impl BoardBatches {
 
 impl Batch {
     /// Computes and empties the queue. Calls `emit` for each pixel, with the area of the board's
-    /// first colour minus that of the second. `crossing` contains two numbers: how many lines of
-    /// each of the board's two families cross each pixel. The smaller number comes first.
+    /// first colour minus that of the second. `crossing` contains the number of crossed lines in
+    /// each of the board's two families, which is the same for all pixels. The smaller number comes
+    /// first.
     fn compute(
         &mut self,
         crossing: [usize; 2],

@@ -114,13 +114,13 @@ impl EdgeSeries {
 /// lines between its rows.
 #[derive(Debug)]
 pub(super) struct LineCrossings {
-    /// Coordinate t along the edge at the first crossed line, and the step of t from line to line,
-    /// in double-double. The unit is the side of a square. Multiples of 2, the period of the square
-    /// wave, are subtracted.
+    /// Coordinate t along the edge at the first crossed line, and the change of t from one crossed
+    /// line to the next, in double-double. The unit is the side of a square. Multiples of 2, the
+    /// period of the square wave, are subtracted.
     pub reduced: [Double; 2],
     /// Depth m of the edge at the first line that it crosses.
     pub depth: f64,
-    /// Step of the depth m from one crossed line to the next.
+    /// Change of the edge's depth m from one crossed line to the next.
     pub rise: f64,
     /// Number of crossed lines, an integer; infinite if the edge ends on the horizon.
     pub count: Double,
@@ -201,9 +201,9 @@ impl LineCrossings {
         reduce_double(&t.plus(&stride.times(j)))
     }
 
-    /// Returns the step of the coordinate t from crossing to crossing, plus 1, in squares, with
-    /// multiples of 2, the period of the square wave, subtracted. The added 1, half a period,
-    /// stands for the sign (−1)^j, which alternates from crossing to crossing.
+    /// Returns the change of the coordinate t from one crossing to the next, plus 1, in squares.
+    /// The added 1 is half a period of the square wave. It accounts for the sign (−1)^j, which
+    /// alternates from crossing to crossing. Multiples of the period, 2, are subtracted.
     pub(super) fn alternating_step(&self) -> Double {
         reduce_double(&self.reduced[1].plus(&Double::from_f64(1.0)))
     }

@@ -101,8 +101,8 @@ pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
 };
 
 /// Integrates the board's sign (1 on squares of one colour, −1 on the others) over a convex polygon
-/// in which the depth changes little from square to square. The polygon may reach the horizon. It
-/// must lie in `visible`, the part of a polygon of the picture in which the floor is seen.
+/// in which the depth changes little from square to square. The polygon may reach the horizon.
+/// `visible` is the larger polygon of which this one is a part; the floor is seen in all of it.
 pub(super) fn sum(
     board: &Homography,
     polygon: &[DVec2],
@@ -113,9 +113,9 @@ pub(super) fn sum(
     let corner = |&at: &DVec2| board.corner(at, visible);
     let corners: Vec<Corner> = polygon.iter().map(corner).collect();
     // The polygons of a pixel divide its tolerance in proportion to their areas, but each gets at
-    // least the fraction `MIN_SHARE`. The limits of truncated sums (`FINITE_TAIL` and the constants
-    // after it) assume four edges, so that a polygon of more edges gets proportionally less per
-    // edge.
+    // least the fraction `MIN_SHARE`. The limits `FINITE_TAIL`, `ENDLESS_TAIL` and
+    // `ONLY_FINITE_TAIL` assume that a polygon has four edges. If it has more, each edge gets
+    // proportionally less.
     let share = area.abs().max(MIN_SHARE) * (4.0 / corners.len() as f64).min(1.0);
     let edges: Vec<Option<Edge>> = (0..corners.len())
         .map(|i| Edge::new(board, &corners[i], &corners[(i + 1) % corners.len()]))
@@ -209,11 +209,10 @@ fn terms(
     best
 }
 
-/// Returns two values at a corner of a polygon: a potential and a density. The differences of the
+/// Returns the potential and the floor's density at a corner of a polygon. The differences of the
 /// potential between the ends of the edges are part of the polygon's integral. The potential is a
-/// sum over derivatives of order 0 to `terms` − 1. The density is that of the floor in the picture,
-/// in square pixels per square of the board. The rounding error of the potential is proportional to
-/// the density.
+/// sum over derivatives of order 0 to `terms` − 1. The density is in square pixels per square of
+/// the board. The rounding error of the potential is proportional to it.
 fn potential(board: &Homography, corner: &Corner, terms: usize) -> (f64, f64) {
     match terms {
         0..=2 => potential_of::<2, 4>(board, corner, terms),

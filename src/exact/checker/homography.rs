@@ -77,9 +77,9 @@ pub(in crate::exact) struct Homography {
     displacement: f64,
     /// Unit vector along the horizon.
     horizon: DVec2,
-    /// Coefficients d and e of the maximum displacement of a point perpendicular to the horizon by
-    /// rounding errors, d + e·L, in pixels. L is the value of the form `below` at the point; it is
-    /// 0 on the horizon.
+    /// Coefficients d and e, in pixels. Rounding errors displace a point by at most d + e·L
+    /// perpendicular to the horizon. L is the value of the form `below` at the point; it is 0 on
+    /// the horizon.
     across_horizon: [f64; 2],
     /// Maximum value of the form `below`, which is 0 on the horizon, at which a point is treated as
     /// lying on the horizon. A value up to this maximum may be only a rounding error.
@@ -160,9 +160,10 @@ fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
 
 impl Homography {
     /// Derives the homography from the three linear forms of [`Homography`]. `across` contains the
-    /// forms of the two numerators, and `below` is the form of the common denominator. A common
-    /// positive factor of the three does not matter. The error bounds are smallest if the origin of
-    /// the floor's coordinates is near the part of the floor that the pixel shows.
+    /// forms of the two numerators, and `below` is the form of the common denominator. All three
+    /// may be multiplied by the same positive factor, because only their quotients are used. The
+    /// error bounds are smallest if the origin of the floor's coordinates is near the part of the
+    /// floor that the pixel shows.
     pub fn new(across: [[f64; 3]; 2], below: [f64; 3]) -> Self {
         let (below, scale) = normalized(below);
         let across = across.map(|form| form.map(|c| libm::ldexp(c, -scale)));
@@ -197,8 +198,8 @@ impl Homography {
         let errors = [a, b, below].map(|form| 4.0 * UNIT * size(&form));
         let steepness = libm::hypot(below[0], below[1]);
         // Errors e of the forms displace a point by v = M⁻¹·e, where M is the matrix of the three
-        // forms. The initial value, four unit roundoffs, covers the rounding errors of the point's
-        // own coordinates.
+        // forms. The rounding errors of the point's own coordinates displace it by up to four unit
+        // roundoffs, the initial value of `displacement`.
         let volume = det.abs() * (1.0 - det_off(UNIT)).max(0.0);
         let (mut displacement, mut tilt) = (4.0 * UNIT, 0.0);
         for (error, column) in errors.iter().zip(&columns) {
@@ -280,7 +281,8 @@ impl Homography {
         let place = form(&self.across[axis], at) / level;
         let terms = size(&self.across[axis]) + place.abs() * size(&self.below);
         // The factors of each form have three roundings, its value has four, and the quotient N/L
-        // has one. The total of 8 is doubled, because the error of L may be as large as half of L.
+        // has one, 8 in total. The error of N/L is proportional to 1/L. If L is as small as twice
+        // its own error, the true 1/L may be twice the computed one, so the total is doubled.
         (place, 16.0 * UNIT / level * terms)
     }
 

@@ -6,8 +6,9 @@
 //!
 //! - Near squares are cut out of the picture one by one ([`near`]).
 //! - Over all farther squares, Green's theorem turns the integral into a sum over the lines that
-//!   the polygon's edges cross ([`green`]). [`tail`] evaluates the sum if the lines are very many
-//!   or infinitely many, towards the horizon or along an edge that hardly recedes.
+//!   the polygon's edges cross ([`green`]). If an edge crosses very many or infinitely many lines,
+//!   [`tail`] evaluates the sum. This happens towards the horizon, and along an edge that hardly
+//!   recedes.
 //! - Pixels that show only a board, with few of its lines, are computed eight at a time
 //!   ([`board_pixels`], [`strips_simd`]).
 //!

@@ -84,8 +84,8 @@ struct Cutter {
     rest: Vec<DVec2>,
     piece: Vec<DVec2>,
     spare: Vec<DVec2>,
-    /// Numbers of the next strip and of the last one; `None` if the polygon is empty or a
-    /// coordinate is not below [`MAX_SQUARE`].
+    /// Number of the next strip, and number of the last strip. `None` if the polygon is empty, or
+    /// if a coordinate is [`MAX_SQUARE`] or more.
     strips: Option<(i64, i64)>,
     /// Maximum number of corners of the part of the polygon that is not yet cut off (`rest`). With
     /// more corners, the part is not cut any further.
@@ -169,9 +169,10 @@ impl Cutter {
         }
         let Some([from, to]) = chord else { return };
         let size = |k: usize| self.across[k].abs() + (n * self.below[k]).abs();
-        // The factors of the line's form have three roundings of terms of at most `size`, and the
-        // form's value has four. The chord's end points have four more roundings, which are added
-        // to the error below.
+        // The cutting line's form has the maximum error `off`: three roundings in computing its
+        // factors, and four in computing a value. Each rounding is relative to the sum of the
+        // absolute values of the form's terms. The chord's end points have four more roundings,
+        // which are added to the error below.
         let off = 7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2));
         let step = (to - from).abs();
         tally.bound += (off / line[0].abs().max(line[1].abs()) + 4.0 * UNIT) * (step.x + step.y);

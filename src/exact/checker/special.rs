@@ -186,7 +186,8 @@ pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS
 }
 
 /// Lowest and highest order s of the exponential integrals F_s ([`integrals`]). No other orders are
-/// needed, because the sums over an edge's crossings use only the exponents 3, 4 and 5.
+/// needed, because the sums over an edge's crossings contain the depth only to the powers −3, −4
+/// and −5.
 const ORDERS_OF_INTEGRALS: [u32; 2] = [3, 5];
 
 /// Value of |y| below which the exponential integral F_3(y) ([`integrals`]) is computed by the
@@ -406,8 +407,9 @@ mod tests {
         close(expanded(&EXPANSIONS, 3.0), power_series(3.0), 1e-14);
     }
 
-    /// The first two terms of each part's asymptotic series are enough here: the third is at most
-    /// 6·7·8·9·y⁻⁴ of the first, 3.03e-13 at y = 10⁴. A few roundings are added to it.
+    /// The real and the imaginary part of each integral have an asymptotic series of their own. Two
+    /// terms of it are enough here: the third is at most 6·7·8·9·y⁻⁴ of the first, 3.03e-13 at y =
+    /// 10⁴. The tolerance adds a few roundings to this.
     #[test]
     fn both_parts_of_large_integrals_have_all_their_digits() {
         for y in [1e4, -1e4, 3e7, 5e10, -1e15] {

@@ -62,9 +62,10 @@ pub(super) struct BoardLanes {
     few: FormRows,
     many: FormRows,
     below: FormRows,
-    /// Sign for each pixel: 1 if the pixel's first square has the board's first colour, −1 if it
-    /// has the second. The first square is the one in the first of the pixel's columns of squares
-    /// and in the first of its rows.
+    /// Sign by which each pixel's integral is multiplied at the end. The integral is computed as if
+    /// the pixel's first square had the board's first colour; the sign is −1 if it has the second
+    /// colour. Of the columns and rows that the pixel shows, the first square is in those with the
+    /// least numbers.
     sign: Lanes,
     /// Number of the square at each of the four corners of each pixel: the column number, or the
     /// row number, relative to the pixel's first column or row. It is the column number if fewer
@@ -222,8 +223,8 @@ impl BoardLanes {
     }
 
     /// Cuts each pixel into `few` + 1 strips and writes the strips' sides to `sides`. The signs of
-    /// the strips alternate and start with 1. Returns 0 for each pixel that could be cut, and
-    /// infinity for each other pixel.
+    /// the strips alternate and start with 1. Returns what to add to each pixel's error bound: 0,
+    /// or infinity if the pixel could not be cut.
     #[inline(always)]
     fn strips(&self, few: usize, sides: &mut [Sides]) -> Lanes {
         let mut failed = [0.0; PIXELS];

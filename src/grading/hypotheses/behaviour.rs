@@ -67,14 +67,15 @@ pub enum Rays {
     /// The scene's up vector is used as the picture's upward direction, although it need not be
     /// perpendicular to the view direction.
     UpAsTop,
-    /// The roll is applied to the right vector first. The upward direction is then computed from
-    /// the turned right vector instead of the original one, which skews the picture.
+    /// The roll is applied to the camera's right vector first. The upward direction is then
+    /// computed from the turned right vector instead of the original one, which skews the picture.
     NewRight,
-    /// The roll turns the right vector only, not the upward direction. This skews the picture.
+    /// The roll turns the camera's right vector only, not the upward direction. This skews the
+    /// picture.
     RightAlone,
-    /// Rays are parallel. The field is the distance from the eye, in metres, at which objects
-    /// appear as large as in the correct picture. Nearer objects appear smaller and farther ones
-    /// larger than in the correct picture.
+    /// Rays are parallel. The number is a distance from the eye, in metres. Objects at this
+    /// distance appear as large as in the correct picture, nearer ones too small and farther ones
+    /// too large.
     Parallel(f64),
     /// The projection is that of a fisheye lens: the angle between a ray and the view direction is
     /// proportional to the distance from the picture's middle.
@@ -97,8 +98,9 @@ pub enum Spheres {
     /// The farther of the two intersections is used instead of the nearer one.
     GreaterRoot,
     /// The quadratic equation a·t² + b·t + c = 0 is solved wrongly: the program multiplies by a
-    /// instead of dividing by it. Here a is the squared length of a vector along the ray, from the
-    /// eye to the view plane. The number is the distance of the view plane from the eye, in metres.
+    /// instead of dividing by it. Here a is the squared length of the ray's direction vector, which
+    /// reaches from the eye to the view plane. The number is the distance of the view plane from
+    /// the eye, in metres.
     TimesA(f64),
 }
 
@@ -137,7 +139,8 @@ pub struct Behaviour {
     pub square_rule: SquareRule,
     /// Ratio of a pixel's width to its height; 1 is correct.
     pub aspect: f64,
-    /// Distance between the samples of neighbouring pixels, in pixels, along x and y; 1 is correct.
+    /// Spacing of the samples along x and y: the distance, in pixels, between corresponding samples
+    /// of neighbouring pixels. 1 is correct.
     pub spread: [f64; 2],
     /// Offset of the samples from their correct places, in pixels, along x and y.
     pub offset: [f64; 2],
@@ -149,14 +152,15 @@ pub struct Behaviour {
     pub clips_distances: bool,
     /// How the intersections of a ray with a sphere are computed.
     pub spheres: Spheres,
-    /// Largest absolute coordinate of a checkerboard's points along its two axes, in metres.
-    /// Infinity is correct.
+    /// Half the side of the square to which a checkerboard is limited, in metres. The square is
+    /// centred at the origin. Infinity is correct.
     pub board_reach: f64,
     /// Index of the axis perpendicular to a checkerboard; 1, the y axis, is correct.
     pub board_normal: usize,
     /// How the colour of a surface is shaded.
     pub shading: Shading,
-    /// Index of an object that rays are intersected with wrongly, and the fault. `None` is correct.
+    /// Fault in how rays are intersected with an object, and before it the object's index. `None`
+    /// is correct.
     pub hit: Option<(usize, HitFault)>,
 }
 
@@ -186,8 +190,8 @@ impl Behaviour {
         self == Self::default()
     }
 
-    /// Returns whether each object is seen only inside the outline that it has in a correct
-    /// picture. Which of several objects is visible, and in which colour, may still be wrong.
+    /// Returns whether no object is seen outside the outline that it has in a correct picture.
+    /// Inside their outlines, objects may still hide each other wrongly or have wrong colours.
     pub fn is_in_place(self) -> bool {
         !self.is_shifted()
             && self.pixel == 1.0

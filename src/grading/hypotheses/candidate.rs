@@ -23,8 +23,8 @@ pub enum Mistake {
     /// The picture has an extra patch. The fields are its colour, in linear light, and its bounding
     /// rectangle: first the least column and row, then the greatest column and row.
     Patch([f64; 3], [[f64; 2]; 2]),
-    /// Two objects have exchanged their colours. The numbers are their indices. Each of them has a
-    /// single colour.
+    /// Two objects of one colour each have exchanged their colours. The numbers are the objects'
+    /// indices.
     ColorsExchanged(usize, usize),
     /// The pixel filter is too wide or too narrow. The number is its width, in pixels.
     Filter(f64),
@@ -63,8 +63,8 @@ pub enum Shows {
     InAreas,
     /// Only at edges, where colours meet.
     AtEdges,
-    /// Inside areas and at edges, but weakly. The search at edges tries such a mistake only if
-    /// areas of one colour are wrong.
+    /// Inside areas and at edges, but weakly. The search at edges tries such a mistake only if the
+    /// areas of one colour, too, differ from the prediction.
     Everywhere,
 }
 
@@ -94,8 +94,8 @@ impl Mistake {
         }
     }
 
-    /// Returns whether the mistake is wrong numbers of the camera's angle of view, or of the
-    /// distance or height of its view plane. These fields set how much the camera sees.
+    /// Returns whether the mistake consists of wrong numbers for the camera's angle of view, or for
+    /// the distance or height of its view plane. These fields set how much the camera sees.
     pub fn is_size(&self) -> bool {
         const SIZES: [&str; 4] = ["d", "fov", "hfov", "view_height"];
         matches!(self, Self::Numbers(parameter, _)
@@ -161,8 +161,8 @@ impl Candidate {
         mistakes.try_fold(Self::correct(scene), |candidate, one| candidate.with(one))
     }
 
-    /// Returns a correct program that renders the hypothesis's scene without the objects that the
-    /// hypothesis omits.
+    /// Returns a correct program for the hypothesis's scene. Objects that the hypothesis does not
+    /// draw are not drawn either.
     pub fn drawn_correctly(&self) -> Self {
         Self {
             is_drawn: self.is_drawn.clone(),
@@ -257,9 +257,9 @@ impl Candidate {
         Self::of(scene, mistakes)
     }
 
-    /// Returns whether the program keeps the mean light of an area. It does if it encodes light
-    /// correctly and its other effects only mix or exchange channels, or mix a pixel with its
-    /// neighbours.
+    /// Returns whether the program keeps the mean light of an area. This holds if the program
+    /// encodes light correctly, and otherwise only mixes channels, exchanges channels, blurs or
+    /// sharpens.
     pub fn keeps_light(&self) -> bool {
         let mut effects = self.effects.iter();
         let keeps = |effect: &Effect| {

@@ -61,8 +61,8 @@ pub fn shift(c: &mut Candidate, by: [f64; 2]) {
     c.behaviour.offset = c.layout.source_direction(by);
 }
 
-/// Increases the distance between the samples of neighbouring pixels, as if the program divided the
-/// window into one column and one row less than the picture has.
+/// Widens the spacing of the samples, as if the program divided the window into too few pixels: one
+/// column and one row less than the picture has.
 pub fn spread_by_one_less(c: &mut Candidate) {
     c.behaviour.spread = sides(c).map(|side| side / (side - 1.0).max(1.0));
 }
@@ -186,8 +186,10 @@ pub fn twice_arctan(tangent: f64) -> Angle {
     Angle::from_degrees((2.0 * libm::atan(tangent)).to_degrees())
 }
 
-/// Increases the distance of the view plane from the eye, as if the camera's vector to the right
-/// were not divided by its length.
+/// Shows the scene larger, as if the program did not divide the camera's right vector by its
+/// length. That length is the sine of the angle between the up vector and the view direction.
+/// Making the window smaller by this factor has the same effect as increasing the distance of the
+/// view plane.
 pub fn divide_by_sine_of_up(c: &mut Candidate) {
     let (from, to) = c.scene.camera.view.ends(c.scene.camera.eye);
     let [up, ahead] = [c.scene.camera.up, to - from].map(DVec3::normalize_or_zero);

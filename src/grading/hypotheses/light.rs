@@ -19,7 +19,7 @@ pub const STEP: f64 = 1.0 / 255.0;
 pub enum Curve {
     /// The sRGB curve, which is correct.
     Correct,
-    /// No encoding: linear light is written, and viewers decode it although they should not.
+    /// No encoding: linear light is written to the file. Viewers take it for sRGB and decode it.
     Missing,
     /// The sRGB curve, applied twice.
     Twice,
@@ -112,8 +112,7 @@ fn interpolated(light: f64, value: impl Fn(usize) -> f64) -> f64 {
 
 /// Encodes light from 0 to 1 as sRGB from 0 to 1, accurate to a hundredth of an 8-bit step.
 pub fn encoded_quickly(light: f64) -> f64 {
-    // If light is encoded twice, a viewer undoes only one of the two encodings. So the viewer sees
-    // the light's sRGB encoding.
+    // A viewer decodes once. So light that was encoded twice appears as its sRGB encoding.
     Curve::Twice.seen_quickly(light)
 }
 

@@ -66,8 +66,8 @@ const fn row(
     }
 }
 
-/// Expands to a row of the table of mistakes. Several rows are alike except for a part of the
-/// message and a number or function. The first word of the arguments names the kind of row. The
+/// Expands to a row of the table of mistakes. Used for rows that differ only in a part of the
+/// message and in a number or function. The first word of the arguments names the kind of row. The
 /// other arguments are the parts that differ.
 #[rustfmt::skip]
 macro_rules! family {

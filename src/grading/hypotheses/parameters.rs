@@ -15,7 +15,7 @@ use crate::{
     schema::{self, FieldRow as Field, Value},
 };
 
-/// What a field of a scene belongs to.
+/// Part of a scene that has fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Owner {
     /// The block `image` of the scene.
@@ -66,7 +66,8 @@ fn all(scene: &Scene) -> Vec<Parameter> {
     let mut found: Vec<Parameter> = owners
         .flat_map(|owner| {
             let fields = schema::block(owner.kind(scene)).map_or(&[][..], |block| block.fields);
-            // A box is described by its center and size, even if the file gives its corners.
+            // A box is described by its center and size, even if the file gives its corners. So the
+            // fields of the corners, `min` and `max`, are left out.
             let is_used = move |field: &&Field| {
                 let is_corner = matches!(field.name, "min" | "max");
                 !is_corner && owner.part(scene).value(field.name).is_some()
@@ -290,7 +291,7 @@ impl Parameter {
 
     /// Returns for each number the change that moves the picture by about `pixels` pixels. A change
     /// of colour moves nothing, so the result for each colour channel is 8 or −8, on a scale from 0
-    /// to 255.
+    /// to 255. The sign is chosen so that the changed channel stays in this range.
     pub fn steps(&self, scene: &Scene, pixels: f64) -> Vec<f64> {
         if self.is_color() {
             return self.numbers(scene).into_iter().map(inward).collect();

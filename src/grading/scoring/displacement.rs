@@ -18,12 +18,12 @@ const CHANCE: f64 = 50.0;
 /// Maximum displacement of edges, in pixels, that is attributed to the choice of samples if there
 /// is one sample per pixel. For n samples per pixel, it is divided by n. If all pixels use the same
 /// sample positions, the mean of these may differ from the pixel's middle: in a Hammersley set, by
-/// 1/(2n). The value is greater than 1/2 because n is estimated from noise, and is overestimated in
-/// this case.
+/// 1/(2n). The value is greater than 1/2, because n is estimated from noise, and the estimate is
+/// too large if all pixels use the same positions.
 const OFF_MIDDLE: f64 = 0.75;
-/// Maximum displacement that is attributed to a small number of samples per pixel, in pixels. A
-/// larger displacement counts as a mistake. With a larger limit, mistakes in pictures with few
-/// samples would be overlooked.
+/// Maximum displacement of edges, in pixels, that is attributed to the choice of samples, however
+/// few samples there are. With a larger limit, mistakes in pictures with few samples would be
+/// overlooked.
 const MOST_OFF_MIDDLE: f64 = 0.15;
 
 /// Number of coefficients of an affine displacement: a constant and the slopes in x and y, for each
@@ -40,14 +40,16 @@ const SURE: f64 = 8.0;
 const WIDE: f64 = 1.4;
 /// Extra tolerance of the squared pixel width above [`WIDE`], in squared pixels, if each pixel has
 /// one sample. For n samples per pixel, it is divided by n. It is needed because few samples at the
-/// same places in all pixels make a correct picture less sharp.
+/// same places in all pixels may lie farther apart than a pixel's points do on average. This makes
+/// a correct picture less sharp.
 const WIDER: f64 = 3.0;
 /// Tolerance of the squared pixel width below 1, the correct value, in squared pixels, in a picture
 /// without noise. With a larger tolerance, pixels that are slightly too narrow would be overlooked.
 const NARROW: f64 = 0.25;
 /// Extra tolerance of the squared pixel width below 1, in addition to [`NARROW`], in squared
 /// pixels, if each pixel has one sample. For n samples per pixel, it is divided by n. It is needed
-/// because few samples make a correct picture sharper.
+/// because few samples at the same places in all pixels may lie closer together than a pixel's
+/// points do on average. This makes a correct picture sharper.
 const NARROWER: f64 = 5.0;
 
 /// Greatest squared width of a pixel, in squared pixels, that counts as correct in a JPEG, whose
@@ -67,8 +69,7 @@ const MOST_WIDTH: f64 = 6.0;
 pub struct Displacement {
     /// Root mean square of the displacement perpendicular to the edges, in pixels.
     pub length: f64,
-    /// Displacement in the middle of the pixels to which it was fitted, to the right and down, in
-    /// pixels.
+    /// Displacement at the middle of the fitted group of pixels, to the right and down, in pixels.
     pub by: [f64; 2],
     /// Squared length of the fitted displacement, in squared standard deviations.
     pub square: f64,
@@ -86,9 +87,9 @@ struct NormalEquations {
 }
 
 impl NormalEquations {
-    /// Adds the equation of one channel of a pixel: the six unknown coefficients, each multiplied
-    /// by its factor in `row`, should add up to `difference`. The variance of `difference` is
-    /// `variance`.
+    /// Adds the equation of one channel of a pixel to the fit, with the weight `weight`: the six
+    /// unknown coefficients, each multiplied by its factor in `row`, should add up to `difference`.
+    /// The variance of `difference` is `variance`.
     fn add(&mut self, row: &[f64; TERMS], difference: f64, weight: f64, variance: f64) {
         for (j, one) in row.iter().enumerate() {
             let weighted = weight * one;

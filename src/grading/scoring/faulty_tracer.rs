@@ -115,9 +115,9 @@ impl FaultyTracer {
         let places: Vec<DVec2> = lattice(samples).into_iter().map(of_pixel).collect();
         let corners = CORNERS.map(of_pixel);
         let count = places.len() as f64;
-        // Whether a cell shows one colour. There is an entry for each column, which is overwritten
-        // row by row. So at each cell, it is known whether the cell above and the cell to the left
-        // show one colour.
+        // Whether the cell that was computed last in each column shows one colour. Cells are
+        // computed row by row. So the entry of a cell's own column belongs to the cell above, and
+        // the entry of the column before to the cell on the left.
         let mut is_flat = vec![false; part.width as usize];
         let pixel = |(x, y): (u32, u32)| {
             let corner = DVec2::new(f64::from(x), f64::from(y));
@@ -126,9 +126,11 @@ impl FaultyTracer {
             let first = self.color(corner + places[0]);
             let column = (x - part.x) as usize;
             let is_beside = is_flat[column] || column > 0 && is_flat[column - 1];
-            // The squares of a board may be half as large as a cell, and all tested places may then
-            // show one colour by chance. So the test is made only beside a cell of one colour. It
-            // is not made if there are few samples, because taking all of them costs less.
+            // A cell is assumed to have one colour if all tested places show this colour, and the
+            // cell above or to the left has one colour. This neighbour is required because the
+            // squares of a board may be half as large as a cell, and all tested places may then
+            // show one colour by chance. If there are few samples, taking all of them costs less
+            // than the test.
             let mut probes = corners.iter().chain(places.iter().step_by(EACH));
             let is_first = |probe: &DVec2| self.color(corner + *probe) == first;
             if is_beside && places.len() > 8 && probes.all(is_first) {
@@ -357,8 +359,9 @@ pub fn bounds(shape: &Shape, projection: &Projection) -> Option<[DVec2; 2]> {
     Some([least - 1e-6, most + 1e-6])
 }
 
-/// Returns a Fibonacci lattice of at least `samples` points in the unit square. It has one point in
-/// each of its rows and columns, so it samples edges along rows and columns evenly.
+/// Returns a Fibonacci lattice of at least `samples` points in the unit square. If the square is
+/// cut into as many rows, or columns, as there are points, each of them contains one point. So
+/// edges along rows and columns are sampled evenly.
 fn lattice(samples: usize) -> Vec<DVec2> {
     let (mut step, mut count) = (1, 1);
     while count < samples {

@@ -29,7 +29,8 @@ const BLOCK: usize = 16;
 const MIXED: usize = 2;
 
 /// Encodes the predicted picture as the file is encoded, and returns the light after decoding.
-/// Returns `None` if it cannot be encoded in this way.
+/// Returns `None` if the encoder does not support the file's chroma subsampling or the picture's
+/// size.
 pub fn coded(jpeg: &Jpeg, prediction: &Prediction, part: Area) -> Option<Vec<DVec3>> {
     let byte = |light: f64| {
         let encoded = prediction.encoded(light);
@@ -85,9 +86,10 @@ pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<DVe
         let [least, most] = range(mean, width, at, reach);
         let mixed = most - least;
         DVec3::from([0, 1, 2].map(|i| {
-            // In addition to the coefficients, values are rounded or truncated to whole numbers
-            // before and after the transform. The mean squared error of truncation is 1/3, four
-            // times that of rounding, so these terms have the factor 4.
+            // The coefficients are rounded to multiples of their steps. Before and after the
+            // transform, values are also rounded or truncated to whole numbers. The mean squared
+            // error of truncation is 1/3, four times that of rounding, so these terms have the
+            // factor 4.
             let share = SHARES[i] * SHARES[i];
             let steps = square(&jpeg.luma) + share * square(&jpeg.chroma) + 4.0 * (2.0 + share);
             // In bright areas, the difference in light between neighbouring 8-bit values is

@@ -66,10 +66,10 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// Returns a copy of the level for comparisons with sampled predictions. `sampled` and `exact`
-    /// are two predictions of one hypothesis. Their difference is the sampling error, which is
-    /// added to the observed light. Similar hypotheses have the same sampling error, so it cancels
-    /// in their comparisons.
+    /// Returns a copy of the level whose observed light can be compared with sampled predictions.
+    /// `sampled` and `exact` are two predictions of one hypothesis. Their difference is the
+    /// sampling error, which is added to the observed light. Similar hypotheses have the same
+    /// sampling error, so it cancels when they are compared with this copy.
     pub fn with_error(&self, sampled: &Prediction, exact: &Prediction) -> Self {
         let mut level = Self::new(self.grid, self.film, self.part, self.samples, self.jpeg);
         level.base = self.base.clone();

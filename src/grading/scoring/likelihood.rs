@@ -42,8 +42,9 @@ pub struct Score {
     pub share: f64,
 }
 
-/// Difference between a pixel and its prediction, and two variances. `variance` is that of one
-/// sample. `rounding` is the variance of rounding plus the variance of the predicted mean.
+/// Difference between a pixel and its prediction, and the two parts of its variance. `variance` is
+/// the variance of one sample. `rounding` is the variance of rounding plus the variance of the
+/// predicted mean.
 struct PixelError {
     difference: DVec3,
     variance: DVec3,
@@ -119,9 +120,9 @@ impl Prediction<'_> {
             _ => -stretches.sum::<f64>(),
         };
         let (mut squares, mut expected) = (0.0, 0.0);
-        // Two sums over the pixels that mix several colours. `of_samples` is the sum of the
-        // variances of one sample. `beyond` is the sum of the squared differences, minus the
-        // variance of rounding.
+        // Two sums over the pixels that mix several colours: `of_samples` is the sum of the
+        // variances of one sample. `beyond` is the sum of the squared differences that rounding
+        // does not explain.
         let (mut of_samples, mut beyond) = (0.0, 0.0);
         for one in &errors {
             likelihood += one.density(share);

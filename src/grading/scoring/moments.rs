@@ -22,8 +22,8 @@ impl Moments {
         Self::exact((0..cells).map(|_| Default::default()))
     }
 
-    /// Collects the means and variances of exact pixels. The variances of the means themselves are
-    /// 0.
+    /// Collects the means and the variances of one sample for cells whose means are exact. The
+    /// variances of these means are therefore 0.
     pub fn exact(pixels: impl Iterator<Item = (DVec3, DVec3)>) -> Self {
         let (mean, variance): (Vec<_>, Vec<_>) = pixels.unzip();
         let mean_variance = vec![DVec3::ZERO; mean.len()];

@@ -25,9 +25,10 @@ const FULL: f64 = 0.99;
 /// light is multiplied. Rounding to bytes changes a light of 0.01 by up to 3 %, and less light by
 /// more.
 const EMPTY: f64 = 0.01;
-/// Relative difference below which two factors between observed and predicted light count as equal.
-/// If a channel's light exceeds 0.01 (`EMPTY`), rounding it to a byte changes its factor by at most
-/// about 3 %.
+/// Maximum relative difference between a cell's ratio of observed to predicted light and the median
+/// ratio, if the cell is to count as similar. Also the maximum difference from 1 at which the
+/// estimated factor counts as 1. Rounding to a byte changes a light of 0.01 (`EMPTY`) or more by at
+/// most about 3 %.
 const ALIKE: f64 = 0.03;
 
 /// Mean change of a value that is truncated to 8 bits, in steps: truncation loses between 0 and 1
@@ -123,9 +124,9 @@ const POWER: f64 = 0.005;
 
 /// Estimates the factor between observed and predicted light, from cells that should show one
 /// colour. First, `function` is applied to the light. The factor is the median of the ratios,
-/// refined by the mean of similar ratios. It is 1 if the median is close to 1, or if less than half
-/// of the ratios are similar. Channels that are full, i.e. clipped, are ignored. If all are full,
-/// the factor is the least one that makes them full.
+/// refined by the mean of similar ratios. If less than half of the ratios are similar, or if the
+/// refined factor is close to 1, the result is 1. Channels that are full, i.e. clipped, are
+/// ignored. If all are full, the factor is the least one that makes them full.
 fn gain(observed: &[DVec3], mean: &[DVec3], variance: &[DVec3], function: &Tabulated) -> f64 {
     let flat = (0..mean.len()).filter(|&at| variance[at].max_element() < FLAT);
     let pairs = flat.flat_map(|at| [0, 1, 2].map(|i| [observed[at][i], mean[at][i]]));
@@ -229,8 +230,9 @@ impl<'a> Prediction<'a> {
                             let before = mean[at];
                             let sharp = (*own + more).clamp(DVec3::ZERO, DVec3::ONE);
                             mean[at] = sharp.map(srgb_to_linear);
-                            // Sharpening amplifies noise, so the variance is increased, by the
-                            // square of the change.
+                            // Sharpening amplifies noise. The change of the mean is used as an
+                            // estimate of the added standard deviation, so its square is added to
+                            // the variance.
                             let by = mean[at] - before;
                             variance[at] += by * by;
                         }

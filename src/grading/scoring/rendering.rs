@@ -176,8 +176,8 @@ impl Candidate {
             return Area::whole(0, 0);
         }
         let (one, two) = (&self.scene, &other.scene);
-        // If the program shows objects in their places, a changed object makes a difference only
-        // inside its bounding rectangle.
+        // If the program shows no object outside its correct outline, a changed object makes a
+        // difference only inside its bounding rectangle.
         let is_in_place = self.behaviour.is_in_place();
         let is_same_view = one.camera == two.camera && one.image == two.image;
         if !is_in_place || !is_same_view || self.decoding != other.decoding {
@@ -212,9 +212,9 @@ impl Candidate {
     }
 }
 
-/// Returns the means and variances of the cells of `part`. If `known` is given, they are copied
-/// from its first item, except in the area that is its second item. All cells that are not copied
-/// are computed by `make`.
+/// Returns the means and variances of the cells of `part`. `known` contains means and variances to
+/// copy, and an area in which they must not be copied. Cells in this area are computed by `make`,
+/// and so are all cells if `known` is `None`.
 fn completed(
     known: Option<(&Arc<Moments>, Area)>,
     part: Area,

@@ -12,8 +12,8 @@ pub const DEVIATIONS: f64 = 5.0;
 /// a step for rounding, and a quarter for another way to decode colours.
 pub const WRONG: f64 = 0.75;
 
-/// Number of pixels of a JPEG's block. Their errors depend on each other, so a block's mean counts
-/// as a single number.
+/// Number of pixels of a JPEG's block. The errors of these pixels depend on each other, so a block
+/// has only one independent error, not 64.
 const PIXELS_PER_BLOCK: f64 = 64.0;
 
 /// Errors of a picture that no sampling can explain, if a hypothesis about the program is correct.

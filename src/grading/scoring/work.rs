@@ -73,14 +73,16 @@ impl<'a> Work<'a> {
         self.spent.set(self.spent.get() + work);
     }
 
-    /// Returns whether work is left. If not, records that something was left undone.
+    /// Returns whether the limit on work is not yet reached. If it is reached, records that
+    /// something was left undone.
     pub fn may_go_on(&self) -> bool {
         let may = self.remaining() > 0.0;
         self.is_cut.set(self.is_cut.get() || !may);
         may
     }
 
-    /// Returns `None` if no work is left, and records that something was left undone.
+    /// Returns `None` if the limit on work is reached. In that case, records that something was
+    /// left undone.
     pub fn check(&self) -> Option<()> {
         self.may_go_on().then_some(())
     }
@@ -118,8 +120,8 @@ impl<'a> Work<'a> {
         Some(Moments::exact(pixels?.iter().map(moments)))
     }
 
-    /// Spends the work of sampling a part of a picture. If less work is left, spends what is left
-    /// and returns `None`.
+    /// Spends the work of sampling a part of a picture. If this would exceed the limit, spends only
+    /// the rest of the budget and returns `None`.
     pub fn pay_for_samples(&self, objects: usize, samples: usize, part: Area) -> Option<()> {
         let (objects, cells) = (objects as f64, part.pixels() as f64);
         let rays = samples as f64 * cells;

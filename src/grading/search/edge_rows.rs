@@ -28,9 +28,8 @@ const SHARE_TOLERANCE: f64 = 0.3;
 /// at edges predicts a change of the picture. The mistake is named only if the observed fraction of
 /// the change exceeds 0 by this many standard deviations, because then chance is negligible.
 const SURE: f64 = 7.0;
-/// Maximum ratio of two squared differences between a JPEG and its prediction: with a mistake at
-/// edges, and without it. If the ratio is greater, the mistake is not named, because it explains
-/// only a part of the difference.
+/// Maximum fraction of a JPEG's squared difference from its prediction that a mistake at edges may
+/// leave. If it leaves more, it is not named, because it explains only a part of the difference.
 const LEFT_IN_CODED: f64 = 0.25;
 
 /// Identifiers of the mistakes that move samples by a few pixels at most.
@@ -40,9 +39,9 @@ const SHIFT_IDS: [&str; 2] = ["half_pixel", "window_one_less"];
 /// mistake encodes samples before it averages them.
 const CODED_ID: &str = "averaged_encoded";
 
-/// Maximum ratio of two squared differences between the picture and its prediction: with another
-/// pixel width, and with the correct one. Noise is subtracted first. If the ratio is greater, the
-/// width is not named, because a slight blur may hide the effect of another mistake.
+/// Maximum fraction of the squared difference between the picture and its prediction that a wrong
+/// pixel width may leave. Noise is subtracted first. If the width leaves more, it is not named:
+/// another mistake at edges may merely look like a slight blur.
 const LEFT_BY_FILTER: f64 = 0.5;
 
 /// Factors by which an estimated pixel width greater than 1 is multiplied. The most likely of the
@@ -56,9 +55,10 @@ const LEAST_WIDE: f64 = 1.1;
 /// A few values suffice, because edges determine a narrow width only roughly.
 const NARROW_WIDTHS: [f64; 3] = [0.25, 0.5, 0.7];
 
-/// Divisor of the number of pixels: mistakes that are weakly visible everywhere are tried if more
-/// than 1/50 of the pixels are wrong, or if the wrong pixels lie at edges. With a smaller divisor,
-/// such mistakes would be overlooked in more pictures.
+/// Least number of pixels for each wrong one at which a picture is much wrong. Mistakes that are
+/// weakly visible everywhere are tried in pictures that are much wrong, i.e. in which more than
+/// 1/50 of the pixels are wrong, or whose wrong pixels lie at edges. A smaller number would
+/// overlook such mistakes in more pictures.
 const MUCH_WRONG: usize = 50;
 
 /// Maximum difference between the estimated shift of all edges in the picture and the shift that a

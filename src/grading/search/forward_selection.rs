@@ -63,7 +63,7 @@ const NEAR_RATIO: f64 = 0.1;
 
 /// Maximum ratio of a hypothesis's error to the least error of all hypotheses so far. If the ratio
 /// is larger, the numbers of the hypothesis are not fitted further, because it is unlikely to
-/// become the best. Adding a mistake at edges would hardly reduce its error.
+/// become the best. Not even an added mistake at edges would reduce its error much.
 const WORSE: f64 = 4.0;
 /// Error below which differences between hypotheses are ignored, as a fraction of a correct
 /// program's squared error. Without this limit, a hypothesis without any error would exclude all
@@ -225,7 +225,8 @@ impl Search<'_> {
 
     /// Returns whether a known hypothesis explains the picture with fewer parameters, or with as
     /// many and at no greater cost. If the known hypothesis intersects spheres wrongly, mistakes
-    /// are counted instead of parameters.
+    /// are counted instead of parameters, so that it does not exclude a hypothesis with a single
+    /// mistake of many numbers.
     fn has_better(&self, candidate: &Candidate, cost: f64) -> bool {
         let explained = self.explained.as_ref();
         explained.is_some_and(|(least, explained)| {
@@ -392,9 +393,9 @@ struct Extension<'a> {
 }
 
 impl<'a> Extension<'a> {
-    /// Functions that extend a set of mistakes by one kind of mistakes each. The cheapest function
-    /// comes first. Each returns hypotheses with their differences from the picture on the coarsest
-    /// grid.
+    /// Functions that extend a set of mistakes, one function for each kind of mistakes. The
+    /// cheapest function comes first. Each returns hypotheses with their differences from the
+    /// picture on the coarsest grid.
     const KINDS: [fn(&Self) -> Rated; 3] = [Self::rows, Self::numbers, Self::joint];
 
     /// Prepares the extension of a set of mistakes. Returns `None` if the budget of work is used

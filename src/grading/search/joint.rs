@@ -23,8 +23,8 @@ const BEST: usize = 8;
 /// took most of the time of judging a wrong picture.
 const CORRELATED: usize = 32;
 
-/// Maximum ratio of the differences from the picture with and without a further mistake. The value
-/// 0.95 rejects mistakes that explain less than 5 % of the difference.
+/// Number by which the difference from the picture is divided, once for each mistake of a
+/// combination. So a further mistake must explain more than 5 % of the difference.
 const ROW_RATIO: f64 = 0.95;
 
 /// Returns how strongly observed and predicted light are correlated, from 0 to 1. The light of a

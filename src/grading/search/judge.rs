@@ -29,7 +29,7 @@ const COARSE: u32 = 48;
 /// does not depend on it, because it is made on single pixels.
 const MIDDLE: u32 = 96;
 
-/// Movement of the picture, in cells, that determines by how much a number is varied to find its
+/// Distance by which the picture should move, in cells, when a number is varied to find its
 /// derivative. A smaller movement is less visible. With a larger one, the picture's change is less
 /// proportional to the number's change.
 pub const CELL_STEP: f64 = 0.25;
@@ -53,8 +53,7 @@ pub struct Judge<'a> {
     /// The central crop at full resolution; `None` if the picture has no more pixels than the crop.
     central: Option<Level<'a>>,
     pub work: Work<'a>,
-    /// The last few hypotheses, given by their mistakes, each with the errors in the picture that
-    /// it does not explain.
+    /// Residuals of the last few hypotheses. A hypothesis is identified by its mistakes.
     pub residuals: RefCell<VecDeque<(Vec<Mistake>, Residual)>>,
     /// Squared difference between the picture and that of a correct program, on the grid `middle`.
     /// Errors that sampling can explain are ignored. The errors of hypotheses are divided by it.
@@ -215,9 +214,8 @@ impl<'a> Judge<'a> {
     }
 
     /// Returns for each cell of a grid the index of the object in its middle, or `None` for the
-    /// background. It is the object that a program shows there if it renders the hypothesis's scene
-    /// correctly and then arranges pixels by `layout`. If the work is cancelled, all cells are
-    /// `None`.
+    /// background. The hypothesis's scene is rendered correctly, and its pixels are then arranged
+    /// by `layout`. If the work is cancelled, all cells are `None`.
     pub fn labels(&self, candidate: &Candidate, layout: Layout, grid: &Grid) -> Vec<Option<usize>> {
         let scene = candidate.drawn_correctly().drawn(grid);
         let Ok(world) = World::new_unless(&scene, self.work.cancel) else {
@@ -259,8 +257,9 @@ impl<'a> Judge<'a> {
         self.fit(candidate, &all, level, CELL_STEP, rounds)
     }
 
-    /// Fits only the numbers of the mistake that was added last: `start` is `from` with this
-    /// mistake. Returns the remaining difference and the fitted hypothesis.
+    /// Fits only the numbers of the mistake that was added last. `from` is the hypothesis without
+    /// this mistake, and `start` is the hypothesis with it. Returns the remaining difference and
+    /// the fitted hypothesis.
     pub fn fit_last(
         &self,
         from: &Candidate,
@@ -275,9 +274,9 @@ impl<'a> Judge<'a> {
     }
 
     /// Fits the numbers at the indices `free` among all numbers of a hypothesis's mistakes. To find
-    /// derivatives, each number is varied so that the picture moves by about `cells` cells. The
-    /// first of `rounds` is the maximum number of rounds of least squares. The second is the
-    /// maximum number of rounds of minimising a robust loss.
+    /// derivatives, each number is varied so that the picture moves by about `cells` cells.
+    /// `rounds` contains two maximum numbers of rounds: for least squares, and then for a robust
+    /// loss.
     pub fn fit(
         &self,
         candidate: &Candidate,

@@ -182,7 +182,7 @@ fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
 /// results of slips of the hand, such as a wrong sign or two exchanged numbers.
 fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     let mut starts = vec![numbers.to_vec()];
-    // A single number takes few trials, so a wider range is tried.
+    // A single number has few starting values, so they may cover a wider range.
     let far = match numbers.len() {
         1 => 10,
         _ => 3,

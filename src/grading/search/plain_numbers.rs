@@ -2,8 +2,8 @@
 //! hand, if these explain the picture as well, and otherwise get fewer digits.
 //!
 //! Somebody who mistypes a scene usually changes one number of a vector, and writes a short number.
-//! So the fit with the most numbers of the scene is chosen among equally good ones, and then the
-//! one with the fewest digits.
+//! So among equally good fits, those that change the fewest of the scene's numbers are preferred.
+//! Of these, the one whose numbers have the fewest digits is chosen.
 
 use super::{
     judge::{CELL_STEP, Judge, price},
@@ -172,14 +172,15 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
     let level = judge.fitting(candidate);
     let (_, fitted) = judge.fit_all(candidate, level, [0, 1])?;
     let long = judge.judged(candidate, level)?;
-    // A shortened number no longer counts as fitted, so its price is no longer part of the cost.
-    // `judged` still adds these prices to the cost of shortened numbers, so this cost may exceed
-    // that of the long numbers by the prices.
+    // A shortened number does not count as fitted, so it should have no price. But `judged`
+    // includes the prices of all numbers in the cost of a hypothesis. So these prices are added to
+    // the limit of the cost.
     let most = long.cost + price(level, fitted.numbers.len());
     let steps = candidate.steps(1.0);
     let rounded_to = |part: f64| {
-        // The length of a vector may be arbitrarily uncertain, so the error of a number is limited
-        // to the change that moves the picture by a pixel.
+        // The picture may hardly depend on a number, such as the length of a vector. The number's
+        // standard deviation is then arbitrarily large, so it is limited to the change that moves
+        // the picture by a pixel.
         let errors = fitted.errors.iter().zip(&steps);
         let errors = errors
             .map(|(error, step)| (part * step.abs()).max((DEVIATIONS * error).min(step.abs())));

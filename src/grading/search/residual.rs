@@ -54,8 +54,8 @@ impl Judge<'_> {
     /// shows another one, and edges lie in their places and are as sharp as they should be.
     ///
     /// If the prediction is exact, the grid `middle` is tested first, because this is faster than
-    /// testing single pixels. A wrong cell contains at least one wrong pixel, so the test of the
-    /// pixels can then be skipped.
+    /// testing single pixels. A wrong cell contains at least one wrong pixel, so the pixels are not
+    /// tested if a cell is wrong.
     pub fn explains(&self, candidate: &Candidate) -> bool {
         let is_possible = !self.is_exact(candidate)
             || self
@@ -143,7 +143,7 @@ fn displacement_and_width(
 ) -> (Option<Displacement>, Option<f64>) {
     let level = &judge.fine;
     let share = match level.jpeg {
-        // In a JPEG, the number of samples is not estimated by the score, because coding also
+        // In a JPEG, the share is not derived from the number of samples in the score: coding also
         // changes edges, which would look like fewer samples.
         Some(_) => prediction.share(),
         None => {

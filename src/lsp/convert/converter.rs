@@ -103,8 +103,8 @@ impl Converter<'_> {
 
     pub fn signature(&self, signature: Signature) -> Value {
         let parameters = signature.parameters.iter().map(|range| {
-            // The protocol demands UTF-16 for offsets within labels, even if the client counts
-            // columns in another unit.
+            // The protocol demands UTF-16 for offsets within the label of a signature, even if the
+            // client counts columns in another unit.
             let before = |end: usize| {
                 let before = signature.label.get(..end).unwrap_or_default();
                 count(Encoding::Utf16.columns(before))

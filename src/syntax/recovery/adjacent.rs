@@ -106,8 +106,8 @@ impl<'s> Recovery<'_, 's> {
         bad(span)
     }
 
-    /// Reports a list without parentheses. `fix` is dropped if a word ends directly before the
-    /// list, as in `center1.6, 1, 0`: the list may then start within this word.
+    /// Reports a list without parentheses. `fix` is not offered if a word ends directly before the
+    /// list, as in `center1.6, 1, 0`, because the list may start within this word.
     pub(super) fn missing_parentheses(&mut self, span: Span, fix: Option<Fix>) {
         let help = example(self.context.takes);
         let before = self.line_before(span.start);
@@ -188,8 +188,8 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Returns whether `value` is a name that probably stands for a number, or a formula of such a
-    /// name and number literals.
+    /// Returns whether `value` is a name that probably stands for a number, or a chain of operators
+    /// that starts with such a name and continues with number literals, such as `n * 2`.
     pub(super) fn is_factor(&self, value: &Value<'s>) -> bool {
         match &value.kind {
             ValueKind::Name(name) => self.words.is_factor(name),
@@ -272,8 +272,8 @@ fn are_thousands(text: &str) -> bool {
         && text.bytes().all(|it| it.is_ascii_digit() || it == b' ')
 }
 
-/// Returns whether a surplus `)` after `value` can be removed safely: wherever its `(` is inserted
-/// in `value`, the result stays the same.
+/// Returns whether a surplus `)` after `value` can be removed safely. This is so if `value` stays
+/// the same wherever the missing `(` may belong.
 pub(super) fn is_same_in_parentheses(value: &Value<'_>) -> bool {
     match &value.kind {
         ValueKind::Chain { first, rest } => {

@@ -107,7 +107,8 @@ impl<'s> Recovery<'_, 's> {
         if is_function && let Some(said) = statement("function") {
             self.report(&say::NOT_IN_LANGUAGE, span, &said, None);
         } else {
-            // For a name such as `2ball`, the help moves the digits to the end.
+            // For a name such as `2ball`, the help suggests the name with the digits at its end,
+            // `ball2`.
             let written = self.short(span);
             let letters = written.trim_start_matches(|c: char| c.is_ascii_digit());
             let digits = written.len() - letters.len();
@@ -176,8 +177,8 @@ impl<'s> Recovery<'_, 's> {
             let right = shorten(written);
             let title = format!("write `let {text} = {right}`");
             let fix = (is_right && is_next).then(|| Fix::new(title, edits));
-            // A word of another language, such as `var`, may mean more than `let`, so replacing it
-            // is not safe.
+            // A word of another language, such as `var` or `int`, may say something that `let` does
+            // not say, so replacing it is not safe.
             let is_foreign = !is_plain && suggest::nearest(word, ["let"]).is_none();
             let said = say::MISSING_LET.safe_if(!is_foreign);
             self.report(&said, start, &[&text, &right], fix);

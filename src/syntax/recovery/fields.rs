@@ -58,9 +58,9 @@ impl<'s> Recovery<'_, 's> {
                     self.report(&say::NESTED_BRACES, span, &["braces within a block"], None);
                 }
                 name if self.is_head(0) && !(self.is(1, "{") && self.is_field_name(name)) => {
-                    // Fields that the outer block lacks may stand in the inner one. A block with
-                    // bad text gets no report of missing fields, so the block's keyword is recorded
-                    // as bad text.
+                    // The inner block may contain fields that the outer block lacks, so no field of
+                    // the outer block is reported as missing. This is achieved by recording the
+                    // outer block's keyword as bad text.
                     block.bad.push(block.keyword());
                     had_braces = true;
                     self.nested_block();
@@ -98,8 +98,9 @@ impl<'s> Recovery<'_, 's> {
             && self.indent(start) <= self.indent(block.span.start)
     }
 
-    /// Returns whether the next token stands where the block should be closed: it is the last token
-    /// of the text, or the last of its line, and an item follows on the next line.
+    /// Returns whether the next token stands where the block should be closed. This is so if the
+    /// token is the last of the text, or if it is the last of its line and the next line starts an
+    /// item.
     pub(super) fn is_end_of_block(&mut self) -> bool {
         let is_item = self.is(1, "let") || self.is_head(1);
         self.kind(1) == TokenKind::End || (self.is_on_new_line(1) && is_item)
@@ -316,8 +317,8 @@ impl<'s> Recovery<'_, 's> {
         let mut values = Vec::new();
         let (mut is_listed, mut end) = (false, start);
         while self.starts_value(0) && self.kind(0) != TokenKind::Word {
-            // A name after a comma is read as a further value. If a value follows the name, it is
-            // instead the name of the next field.
+            // A name after a comma is usually a further value. If a value follows the name,
+            // however, the name is that of the next field, and reading stops before it.
             let has_value = !matches!(self.kind(1), TokenKind::Name | TokenKind::Sign)
                 || matches!(self.word(1), "(" | "[" | "<" | "=" | ":" | ":=");
             if self.is_name(0) && (!is_listed || has_value) {
@@ -356,8 +357,8 @@ impl<'s> Recovery<'_, 's> {
         });
         let named: Vec<String> = named.collect();
         let fix = (!named.is_empty()).then(|| replace(span, named.join("  ")));
-        // Two vectors in a box are read as its corners. They may also be its centre and its size,
-        // so the fix is not safe.
+        // Two vectors without field names in a `box` block are read as the box's corners. They may
+        // also be its centre and its size, so the fix is not safe.
         let has_one_way = row.is_some_and(|row| row.choices.is_empty());
         let said = say::MISSING_FIELD_NAME.safe_if(has_one_way);
         self.report(&said, span, &[&self.short(span)], fix);

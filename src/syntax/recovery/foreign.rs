@@ -69,8 +69,8 @@ impl<'s> Recovery<'_, 's> {
         while !(self.is_on_new_line(0) || self.is(0, "{") || self.is(0, "}")) {
             self.bump();
         }
-        // The statement may define names. Names in an item that is marked as `Bad` are not reported
-        // as undefined later.
+        // The statement may define names, so it becomes a `Bad` item: names in such an item are not
+        // reported as undefined later.
         self.items.push(Item::Bad(span.to(self.behind())));
         if self.is(0, "{") {
             self.bump();
@@ -189,8 +189,9 @@ impl<'s> Recovery<'_, 's> {
             let end = start + kept.len().max(1);
             let sign = if line.starts_with(['#', '%']) { 1 } else { 2 };
             let place = Span::new(self.id, start, start + sign);
-            // The fix would write `//` for the sign. This comment would then include the `}`, so
-            // there is no fix.
+            // If a `}` at the end of the line is not part of the comment, there is no fix: with
+            // `//` in place of the characters that start the comment, the comment would include
+            // that `}`.
             if kept.len() < line.len() {
                 let words = [self.written(place), ""];
                 self.report(&say::COMMENT_SIGN, place, &words, None);

@@ -92,8 +92,8 @@ const BEHIND: [HeadPattern; 9] = [
 ];
 
 /// Finds the first mistake in `head`, the indices of an object, such as `for i <= 7`. The text
-/// starts with `for` or a word that stands for it. `has_name` says whether the object has a name
-/// before the `for`.
+/// starts with `for`, or with another word that was written in its place, such as `foreach`.
+/// `has_name` says whether the object has a name before the `for`.
 pub(super) fn slip(head: &str, has_name: bool) -> HeadSlip {
     let mut found = Captures::default();
     let keyword = name_length(head);
@@ -163,8 +163,9 @@ struct Captures<'t> {
 }
 
 impl<'t> Captures<'t> {
-    /// Matches the pattern `row`, as in a [`HeadPattern`], at the offset `from` of `text`. Returns
-    /// the end of the match and the range of the mistake, or `None` if the text does not match.
+    /// Matches `row`, a pattern such as `« 0 <= » I < N` ([`HeadPattern`]), with the text from the
+    /// offset `from` on. Returns the offset where the match ends, and the range of the text between
+    /// `«` and `»`, which is the mistake to report. Returns `None` if the text does not match.
     fn read(&mut self, row: &str, text: &'t str, from: usize) -> Option<(usize, Range<usize>)> {
         let (mut at, mut under, mut index) = (from, from..from, "");
         for item in row.split(' ') {
@@ -221,8 +222,8 @@ impl<'t> Captures<'t> {
         Some((at, under))
     }
 
-    /// Fills the matched texts into the template `text`. Sums and differences in the template are
-    /// computed if the matched texts are numbers.
+    /// Replaces placeholders such as `{I}` and `{N+1}` in `text` by the matched texts. Sums,
+    /// differences and quotients in placeholders are computed if the matched texts are numbers.
     fn filled(&self, text: &str) -> String {
         let [n, m] = [self.n, self.m].map(|text| text.parse::<u32>().ok());
         let or = |number: Option<u32>, text: String| number.map_or(text, |it| it.to_string());

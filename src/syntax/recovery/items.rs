@@ -16,9 +16,9 @@ use crate::{
 /// Words that are surely not an object's name if they stand before a kind, as in `a sphere {`.
 const NO_NAMES: &str = "a an the my new add create draw make object";
 
-/// Maximum number of tokens of a line in which the `{` after the head of a block is searched. A `{`
-/// further on is not found. Heads are shorter than this; the limit bounds the time for a very long
-/// line.
+/// Maximum number of tokens, from the start of a line, among which the `{` after the head of a
+/// block is searched. A `{` further on is not found. Heads are shorter than this; the limit bounds
+/// the time for a very long line.
 const LINE_TOKENS: usize = 24;
 
 impl<'s> Recovery<'_, 's> {
@@ -268,8 +268,8 @@ impl<'s> Recovery<'_, 's> {
         self.items.push(Item::Bad(start.to(self.behind())));
     }
 
-    /// Skips to the next item at the start of a line. Stops earlier after a block or a `}`,
-    /// whichever comes first.
+    /// Skips to the next line that starts an item or a statement of another language. If a block or
+    /// a `}` ends before that line, stops directly after the first of them.
     fn skip_lines(&mut self) {
         while self.kind(0) != TokenKind::End {
             if self.is_on_new_line(0) {
@@ -315,8 +315,8 @@ impl<'s> Recovery<'_, 's> {
         while self.is(0, "}") {
             all = all.to(self.bump());
         }
-        // The fix is certain only if the next token starts a line or an item. Otherwise, another
-        // token than the `}` may have been meant.
+        // The fix is certain only if the next token starts a line or an item. Otherwise, the `}`
+        // may be a typing error for another character.
         let is_before_item = self.is_on_new_line(0) || self.is_head(0) || self.is(0, "let");
         // If a block without its `{` was reported shortly before, the `}` may close that block, so
         // there is no fix.

@@ -98,8 +98,9 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Returns whether a call of another language's function starts here. Such a call is a value
-    /// even on a new line.
+    /// Returns whether the next token starts a call of another language's function, such as
+    /// `vec3(1, 2, 3)`. Even on a new line, such a call is the value of the field or definition
+    /// before it, rather than the start of a field or an item.
     pub(super) fn is_foreign_call(&mut self) -> bool {
         self.words.is_foreign_function(self.word(0)) && self.is(1, "(")
     }
@@ -344,8 +345,8 @@ impl<'s> Recovery<'_, 's> {
             let edits = before.map(|e| Edit::insert(self.id, e.value.span.end, ","));
             Fix::new(format!("write `{l}, {r}`"), edits)
         });
-        // Two values without white space between them, as in `min1.6`, were probably one word, so
-        // the fix is not safe.
+        // Two values without white space between them, as in `min1.6`, may have been meant as
+        // something else, so the fix that writes a comma is not safe.
         let are_apart = left.span.end < right.span.start;
         self.report(
             &say::MISSING_COMMA.safe_if(are_apart),

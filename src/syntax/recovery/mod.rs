@@ -1,7 +1,7 @@
 //! Reads an item that does not follow the grammar.
 //!
-//! In: the text from the item's start. Out: nodes of what can be understood, and one problem for
-//! each mistake. This is a recursive-descent parser over the lexer's tokens. It reads items in
+//! In: the text from the item's start. Out: nodes for the parts that can be read, and one problem
+//! for each mistake. This is a recursive-descent parser over the lexer's tokens. It reads items in
 //! `items`, fields in `fields`, indices in `repetition`, values in `values`, `adjacent` and
 //! `lists`, names in `names`, numbers in `numbers`, needless separators in `signs`, and constructs
 //! of other languages in `foreign`. From an item without mistakes, this parser makes the same tree
@@ -68,7 +68,7 @@ pub struct Recovery<'w, 's> {
     /// Whether [`Self::foreign_file`] has already tested if the text is a file of another program.
     /// The test is done only once.
     is_checked: bool,
-    /// Context of what is read: the block, or the file.
+    /// The block and the field that are being read.
     context: Context<'s>,
     /// Number of parentheses, signs and calls around the value that is read.
     depth: usize,
@@ -81,7 +81,7 @@ pub struct Recovery<'w, 's> {
     too_deep: bool,
 }
 
-/// Context of what is read: a block, or the file.
+/// What the parser is reading: the block, if any, and the field of that block.
 #[derive(Default)]
 struct Context<'s> {
     kind: &'s str,
@@ -146,9 +146,10 @@ impl<'w, 's> Recovery<'w, 's> {
     }
 
     /// Reads the item at `start` again, which follows the grammar but may have been meant
-    /// otherwise. Returns the item's end if the new reading is better: a block then has only known
-    /// fields, or the mistakes of a definition are only comments or functions of other languages.
-    /// If it is not better, restores the items and problems and returns `None`.
+    /// otherwise. Returns the item's end if the new reading is better. A block is better if all of
+    /// its fields are known. A definition is better if mistakes were found, and each is a comment
+    /// or a function of another language. If the new reading is not better, restores the items and
+    /// problems and returns `None`.
     pub fn item_as_meant(&mut self, start: usize) -> Option<usize> {
         let (items, problems, read_to) = (self.items.len(), self.problems.len(), self.read_to);
         let slips = |this: &Self| this.context.signs.values().map(Vec::len).sum::<usize>();
@@ -162,8 +163,8 @@ impl<'w, 's> Recovery<'w, 's> {
             }
             Some([Item::Definition(_)]) => {
                 let mut new = self.problems.iter().skip(problems);
-                // The new reading is better only if it finds a mistake. Otherwise, the node that
-                // the generated parser made is kept.
+                // If the new reading finds no mistake, it explains nothing, and the node that the
+                // generated parser made is kept.
                 let is_new = slips(self) > slips_before || self.problems.len() > problems;
                 is_new && new.all(|problem| problem.code == "pinhole::foreign_function")
             }
@@ -358,7 +359,7 @@ impl<'w, 's> Recovery<'w, 's> {
 
     /// Returns whether the next token ends every unfinished construct before it. Such a token is a
     /// brace, `let`, the name of a field, the start of a block, or the first token of a line.
-    /// Within a block, the first token of a line ends them only if it is a name.
+    /// Within a block, the first token of a line is such a token only if it is a name.
     fn is_boundary(&mut self) -> bool {
         let word = self.word(0);
         matches!(word, "" | "let" | "{" | "}")

@@ -121,8 +121,8 @@ impl<'s> Recovery<'_, 's> {
         let is_whole = row.accepts(arguments.len())
             && (!row.more || self.lists == 0)
             && !self.goes_on(&arguments);
-        // If an operator follows the last argument, the call may end before or after the operator,
-        // so its end is uncertain.
+        // An operator after the last argument may belong to the argument or follow the whole call,
+        // so the end of the call is uncertain.
         let whole = self.operations(bad(span)).span;
         let is_all = self.last_end == end;
         let mut fix = replace(span, format!("{}({list})", name.text));

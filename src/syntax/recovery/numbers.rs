@@ -12,8 +12,8 @@ use crate::{
     },
 };
 
-/// Units that people write. A row holds the spellings of a unit, the factor by which a number in it
-/// is multiplied, and the resulting unit of the language. That unit is empty for lengths, which the
+/// Units that people write. A row holds the spellings of a unit, the factor that converts a number
+/// to the matching unit of the language, and that unit. The unit is empty for lengths, which the
 /// language measures in metres.
 const UNITS: &[(&str, f64, &str)] = &[
     ("° deg degs degree degrees", 1.0, "deg"),

@@ -120,7 +120,7 @@ impl<'s> Recovery<'_, 's> {
         matches!(word, ")" | "]") && word != self.context.close && !is_end(self)
     }
 
-    /// Returns whether the next token continues the list `values`, which was read so far, rather
+    /// Returns whether the next token continues a list, whose values so far are `values`, rather
     /// than ending it.
     pub(super) fn goes_on(&mut self, values: &[Value<'s>]) -> bool {
         let (word, next, is_new) = (self.word(0), self.word(1), self.is_on_new_line(0));
@@ -187,8 +187,8 @@ impl<'s> Recovery<'_, 's> {
         left
     }
 
-    /// Reads operators from `signs` and their operands while they follow `left`. Returns the
-    /// extended value.
+    /// Reads the operators after `left` that are in `signs`, and their right operands. Returns the
+    /// value of the whole chain.
     fn chain(
         &mut self,
         mut left: Value<'s>,

@@ -75,7 +75,7 @@ fn names_have_one_place_for_the_number() {
 }
 
 /// With `--resume`, a picture is rendered again only if its file is missing, is not a picture, or
-/// was made from another text, with other overrides or as another part.
+/// was made from another text, with other overrides or with another crop.
 #[test]
 fn a_resumed_sweep_renders_only_what_is_missing() {
     let folder = folder();
@@ -87,7 +87,8 @@ fn a_resumed_sweep_renders_only_what_is_missing() {
             ));
         };
         let names: Vec<String> = (0..4).map(|i| format!("{ending}{i}.{ending}")).collect();
-        // Makes all files old, runs a sweep, and returns the indices of the files that it wrote.
+        // Sets the modification times of all files to 1970, runs a sweep, and returns the indices
+        // of the files that have been written since.
         let written = |more: &str| {
             for name in &names {
                 if let Ok(file) = fs::File::options().write(true).open(folder.path(name)) {

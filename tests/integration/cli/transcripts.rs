@@ -1,7 +1,7 @@
-//! Runs transcripts of commands in `tests/cli`. A line with `$` is a shell command. The lines below
-//! it are the expected standard output (`<`), standard error (`!`) and, unless it is 0, exit status
-//! (`=`). If the last line of an output has no line end, a `\` follows it. `#` begins a comment.
-//! Each transcript runs in its own folder, which has the scene in `a.scn`.
+//! Runs the shell transcripts in `tests/cli`. A line that begins with `$` is a command. The lines
+//! below it are the expected standard output (`<`), standard error (`!`) and, unless it is 0, exit
+//! status (`=`). If the last line of an output has no line end, a `\` follows it. `#` begins a
+//! comment. Each transcript runs in a folder of its own, with a small scene in `a.scn`.
 //!
 //! `PINHOLE_BLESS=1 cargo test` rewrites the expected results.
 

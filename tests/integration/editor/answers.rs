@@ -23,7 +23,8 @@ use crate::{
 const LEVEL: &str =
     "image { width 200 height 100 } camera { eye (0, 0, 10) direction (0, 0, -1) d 8 }\n";
 
-/// Start of each text in which the camera is dragged. It contains something to look at.
+/// Start of each text in which the camera is dragged. The scene consists of a sphere on a
+/// checkerboard.
 const SEEN: &str = "image { width 400 height 200 }\nsphere { center (0, 1, 0) }\ncheckerboard {}\n";
 
 /// Returns the labels of the completions `all`, grouped by their kind.

@@ -45,8 +45,8 @@ fn any_scene() -> impl Strategy<Value = String> {
     })
 }
 
-/// Generates a point in, near, or very far from the picture. Its coordinates are in units of the
-/// picture's width and height.
+/// Generates a point: inside the picture, slightly outside of it, or very far away. Its coordinates
+/// are in units of the picture's width and height.
 fn any_point() -> impl Strategy<Value = (f64, f64)> {
     let part = || prop_oneof![8 => -0.5..1.5, 1 => Just(1e300), 1 => Just(-1e12)];
     (part(), part())
@@ -72,9 +72,9 @@ fn camera_of(scene: &Scene) -> CameraFacts {
 /// Returns the position in space of a handle of the first object. For a handle without a fixed
 /// position, such as one that depends on the camera, returns the object's centre.
 ///
-/// A checkerboard's handle lies where the camera's view axis meets the board. A drag moves it
-/// straight up or down with the board, so `held`, the scene before the drag, gives its place on the
-/// board.
+/// `held` is the scene before the drag. It is needed for a checkerboard, whose handle starts where
+/// the camera's view axis meets the board. The drag then moves the handle straight up or down
+/// together with the board.
 fn handle_position(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
     match (scene.objects[0].shape, held.objects[0].shape) {
         (Shape::Sphere(sphere), _) => sphere.center,
@@ -180,7 +180,8 @@ fn assert_near(a: DVec2, b: DVec2, text: &str) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
 
-    /// A drag either moves the handle to the pointer, or is refused with a reason.
+    /// A drag either brings the handle as close to the pointer as the handle can move, or is
+    /// refused with a reason.
     #[test]
     fn a_dragged_handle_appears_at_the_pointer(
         text in any_scene(), to in any_point(), which in 0..7usize, word in prop_oneof![Just(""), Just("x"), Just("y"), Just("z"), Just("floor")],
@@ -194,8 +195,8 @@ proptest! {
         let Ok(changed) = dragged(&text, &moved) else { return Ok(()) };
         let mut after = read(&changed);
         prop_assert_eq!(after.objects.len(), before.objects.len());
-        // The camera may use a name whose value the drag has changed. The drag was computed for the
-        // camera before it, so the handle is compared with the pointer as that camera sees them.
+        // The drag may have changed a name that the camera uses. The handle must follow the pointer
+        // as seen by the camera before the drag, so this camera is used.
         after.camera = before.camera;
         let place = handle_position(&after, handle, &before);
         let found = project(&after, place);

@@ -87,9 +87,9 @@ fn ask_about_all(analysis: &Analysis<'_>) {
 
 sampled_and_exhaustive!(every_prefix_and_edit_of_an_example_gets_consistent_editor_answers);
 
-/// Queries an example, and each beginning of it, at every second offset. Reads the example with one
-/// byte removed. Queries it with eight successive characters removed, because a user who rewrites a
-/// line leaves such a text.
+/// Tests an example, and every beginning of it that ends at every second offset. Also reads the
+/// example without one of its bytes, and tests it without eight successive characters, as when a
+/// user rewrites a part of a line.
 fn every_prefix_and_edit_of_an_example_gets_consistent_editor_answers(effort: Effort) {
     for (index, text) in effort.first(3, examples()).enumerate() {
         let whole = sources(&text);

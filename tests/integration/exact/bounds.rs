@@ -1,5 +1,5 @@
-//! Tests of exact pixels: their error bounds, bytes that are certain in spite of the error bound,
-//! memory and time. The error bound limits the distance from the true mean.
+//! Tests of the error bounds in exact pictures. An error bound limits the distance of a computed
+//! pixel from the pixel's true mean. Also tests limits of the memory and the time for a pixel.
 
 use std::time::{Duration, Instant};
 
@@ -120,8 +120,8 @@ fn memory(scene: &str, crop: &str) -> u64 {
     most >> 10
 }
 
-/// Measures the peak memory for a pixel that is hard to compute and for an easy one. They may
-/// differ by at most 128 MiB.
+/// Compares the peak memory for a pixel that is hard to compute with the peak memory for an easy
+/// one. The difference must be at most 128 MiB.
 ///
 /// In the first scene, nearly all objects are seen at one point of the hard pixel, so the program
 /// subdivides the pixel very often. Without a limit, this took 20 GB. In the second scene, the hard

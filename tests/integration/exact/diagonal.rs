@@ -10,7 +10,7 @@ use super::*;
 /// The view plane distance `d` is so tiny that nearly all rays of a picture lie in one vertical
 /// plane. This plane meets the board in a diagonal of its squares. In the first two rows, all
 /// squares on this diagonal are black. In the other rows, the expected values are sums of millions
-/// of terms, computed with 40 digits for a `d` of 0.
+/// of terms. They were computed with 40 digits, as if `d` were 0.
 #[test]
 fn independently_known_pixels_lie_within_the_bound() {
     for [image, camera, board, x, y, truth, off] in rows("
@@ -30,9 +30,9 @@ fn independently_known_pixels_lie_within_the_bound() {
 
 sampled_and_exhaustive!(extreme_lenses_do_not_hang);
 
-/// The cameras have extreme numbers, for which summing over the lines between the board's squares
-/// would take practically forever. The pixels must be computed quickly, even if their error bounds
-/// become large.
+/// Renders checkerboards through cameras with extreme numbers. In some pixels, a sum over all
+/// visible edges of the squares would take practically forever. The pixels must be computed
+/// quickly, even if their error bounds become large.
 fn extreme_lenses_do_not_hang(effort: Effort) {
     for text in effort.of([
         "camera { eye (-24.8, 13.6, -14.3) direction (-0.6542553237278188, 0, -0.5082900613062609) d 1e80 }

@@ -66,7 +66,8 @@ fn quarters_add_up_for_partly_piercing_objects() {
 
 sampled_and_exhaustive!(quarters_add_up_for_extreme_cameras);
 
-/// Uses the scene of figure 9.9 with cameras whose numbers are extreme.
+/// Tests a scene of the textbook, figure 9.9, with cameras that have extremely large or small
+/// numbers.
 fn quarters_add_up_for_extreme_cameras(effort: Effort) {
     let figure = example_text("figure_9_9").replace("checkerboard ", "checkerboard Floor ");
     let size = ["image.width=24", "image.height=16"];

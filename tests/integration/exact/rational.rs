@@ -73,9 +73,9 @@ fn square_indices([place, below]: &[Linear; 2], polygon: &Polygon) -> Vec<IBig> 
     successors(Some(first.clone()), |n| (n < last).then(|| n + IBig::ONE)).collect()
 }
 
-/// Returns the part of a polygon within the row or column `n` of the board's squares. There, the
-/// quotient of the linear forms `place` and `below`, which is one coordinate on the board, lies
-/// between `n` and `n + 1`.
+/// Returns the part of a polygon within the row or column `n` of the board's squares. The
+/// coordinate on the board is the quotient `place` / `below`. It is between `n` and `n + 1` in this
+/// part.
 fn strip([place, below]: &[Linear; 2], n: &IBig, polygon: &Polygon) -> Polygon {
     let line = |n: IBig| -> Linear {
         let n = RBig::from(n);

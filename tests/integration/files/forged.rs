@@ -130,7 +130,7 @@ fn file_names_cannot_forge_lines_or_table_cells() {
             assert!(!said.errors.contains(forged), "{:?}", said.errors);
             assert!(!said.errors.contains("\nerror: b"), "{:?}", said.errors);
         }
-        // The names also appear in the tables and pages of `diff`, `grade` and `report`, so these
+        // File names also appear in the tables and pages of `diff`, `grade` and `report`, so these
         // outputs are tested, too.
         let said = run_with_deadline(&folder, &["diff", &picture, "a.scn"]);
         assert!(!said.errors.contains("\nerror: b"), "{:?}", said.errors);

@@ -177,7 +177,8 @@ fn default_and_folder_outputs_never_follow_links_or_special_files() {
         ("link to a file outside", ""),
         ("link to a folder outside", ""),
     ]) {
-        // By default, the output of `render` and `watch` is named after the scene.
+        // If no output is named, the commands `render` and `watch` derive its name from the scene's
+        // name.
         let lines = ["render b.scn", "watch b.scn"].map(|line| (line, "b.png"));
         // The commands `grade` and `report` write their files into an output folder.
         let grade = "grade a.scn a.png -o out";

@@ -59,7 +59,7 @@ fn is_root() -> bool {
 }
 
 /// Makes the subfolder `closed` read-only. If root runs the tests, also makes [`USER`] the owner of
-/// the folder, of both subfolders and of the scene.
+/// the folder, of its subfolders `home` and `closed`, and of the scene.
 fn give_to_user(folder: &Folder) {
     for (name, mode) in [
         ("", 0o755),

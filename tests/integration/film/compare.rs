@@ -33,8 +33,8 @@ fn pixels_within_the_tolerance_plus_the_bound_compare_equal() {
     for (other, bound, is_equal, undecided) in [
         (&bright, None, false, 0),
         (&bright, Some([1e-3]), true, 1),
-        // A pixel without a difference is undecided if its error bound is greater than the
-        // tolerance.
+        // The colours are equal, but the error bound is greater than the tolerance. So it is
+        // undecided whether the true colours are equal.
         (&dark, Some([1e-3]), true, 1),
         (&dark, Some([1e-6]), true, 0),
     ] {

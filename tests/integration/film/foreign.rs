@@ -1,5 +1,5 @@
-//! Tests with picture files as beginners' programs write them, and with files that shells or
-//! systems have damaged.
+//! Tests with picture files that beginners' own programs write, and with files that the redirection
+//! of output has altered: a shell may change line ends or the text encoding.
 
 use std::io::Cursor;
 

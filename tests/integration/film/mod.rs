@@ -210,7 +210,8 @@ fn recipes_with_too_many_or_non_utf8_overrides_are_refused() {
     assert!(read_recipe(&carrying([foreign, scene].into_iter())).is_ok());
 }
 
-/// The tests of `diff` cover all formats except lossy WebP and the text form of PNM.
+/// Reads the two formats that the tests of `diff` do not cover: lossy WebP, and the text form of
+/// PNM.
 #[test]
 fn a_lossy_webp_and_a_plain_pnm_are_read() {
     let webp = b"RIFF\x22\0\0\0WEBPVP8 \x16\0\0\0\x30\x01\0\x9d\x01\x2a\x01\0\x01\0\x0e\xc0\xfe\x25\xa4\0\x03\x70\0\0\0\0";

@@ -159,8 +159,8 @@ fn is_near(new: &str, old: &str) -> bool {
     suggest::nearest(old, [new]).is_some() || suggest::is_among(old, new)
 }
 
-/// Returns whether `new` is the language's word for `old`, which is a word of another language or
-/// notation.
+/// Returns whether `new` is the word of the scene language for `old`. `old` is a word of another
+/// program's language, or `new` in another notation.
 fn is_known_for(new: &str, old: &str) -> bool {
     let is_tried = |block: &schema::BlockRow| {
         let field = block.field_tried(old);
@@ -247,7 +247,8 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
 ///
 /// A fix may have joined two successive names of `before`, such as `look at`, to a known word,
 /// `lookat`. Each bit of `joins` says whether this is assumed of one such pair. The lowest bit is
-/// for the last pair in the text; the sign bit is for all pairs beyond the other bits.
+/// for the last pair in the text. If there are more pairs than bits, the sign bit is used for all
+/// further pairs.
 fn unmatched_names(
     before: &[String],
     after: &[String],
@@ -303,8 +304,8 @@ pub fn slips(texts: &[String], count: usize, mut is_tried: impl FnMut(&str)) {
     }
 }
 
-/// Returns `text` with one random mistake: a word, number or sign is removed, doubled, moved,
-/// misspelled or replaced, or something is inserted beside it.
+/// Returns `text` with one random mistake at a word, number or sign: for example, this piece is
+/// removed, doubled, misspelled, or followed by another one.
 fn slip(text: &str, random: &mut Random) -> String {
     const OTHERS: [&str; 72] = [
         "radius",

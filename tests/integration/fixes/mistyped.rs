@@ -44,8 +44,8 @@ fn fixes_of_syntax_slips_remove_their_problem_and_add_no_error() {
             let twice = format!("{token} {token}");
             for slip in ["", &twice, other, &format!("{token} {other}")] {
                 let wrong = format!("{}{slip}{}", &text[..start], &text[end..]);
-                // A missing value of a field is a problem that the parser does not report; only the
-                // translation to a scene does. Its fixes are therefore not tested here.
+                // A field without a value is also a syntax problem. It is left out, because it is
+                // reported by the translation to a scene, not by the parser.
                 trial.apply_fixes(&sources(&wrong), |d, _| {
                     d.is_of_syntax && d.code != "pinhole::missing_value"
                 });

@@ -54,7 +54,8 @@ struct Trial {
 
 impl Trial {
     /// Applies each fix of the problems that `is_meant` selects. Records a complaint if the problem
-    /// remains or another one appears.
+    /// remains, if a new error appears, or if the fix of an error does not reduce the number of
+    /// errors.
     fn apply_fixes(
         &mut self,
         before_sources: &Sources,

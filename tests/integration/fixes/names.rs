@@ -34,7 +34,7 @@ const PLACES: [&str; 22] = [
 
 const LETS: &str = "let number = 2\nlet angle = 30deg\nlet vector = (1, 2, 3)\nlet shade = red\nlet pair = (red, blue)\nlet negative = -2\nlet k1 = 7\n";
 
-/// Returns misspellings of a name. A letter is dropped, doubled, swapped or changed, or letters are
+/// Returns misspellings of a name. Letters are dropped, added, doubled, swapped, changed or
 /// capitalized.
 fn mistyped(name: &str) -> Vec<String> {
     let mut slips = vec![
@@ -175,7 +175,8 @@ fn suggested_fields_and_targets_are_valid_where_they_are_suggested() {
         "k2",
         "negativ",
     ] {
-        // Values that contradict other values of a block are left out.
+        // Of the lists, only (1, 1, 9) is used. Another list may contradict the scene: for example,
+        // an eye at (0, 1, 0) would be at the `lookat` point.
         let values = values
             .into_iter()
             .filter(|value| !value.starts_with('(') || *value == "(1, 1, 9)");

@@ -48,8 +48,8 @@ fn no_studio_message_ends_the_conversation_or_changes_the_file() {
         }
         let text = String::from_utf8_lossy(&bytes).into_owned();
         page.transport.0.send(Message::text(text)).unwrap();
-        // The host still answers. All messages that it sends before this answer belong to the
-        // random message.
+        // Waits for the answer to one more request. The messages before this answer belong to the
+        // random message and are skipped.
         let last = json!({ "jsonrpc": "2.0", "id": "last", "method": "studio/x", "params": {} });
         page.transport.write(&last.to_string());
         while page.read()["id"] != "last" {}

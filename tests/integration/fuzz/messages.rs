@@ -154,8 +154,8 @@ fn each_request_is_answered_once_and_the_server_keeps_the_clients_text() {
         for id in asked {
             assert_eq!(answers.get(&id.into()), Some(&1), "request {id}");
         }
-        // The edited text must have the same tokens and diagnostics as a text that is opened as a
-        // whole.
+        // After all edits, the tokens and diagnostics must be the same as those of a new client
+        // that opens the resulting text.
         let mut again = LocalClient::with(&text);
         while again.transport.step() {}
         let ask =
@@ -184,8 +184,8 @@ fn the_server_still_answers_after_any_message() {
             if random.below(2) == 0 {
                 flip(random, &mut bytes);
             }
-            // A message without `method` may look like a response, and a message `exit` ends the
-            // server. Such messages are not sent.
+            // Two kinds of messages are not sent. A message without `method` may be a response,
+            // which the server does not answer, and a message `exit` ends the server.
             let text = String::from_utf8_lossy(&bytes);
             if text.contains("method") && !text.contains("exit") {
                 client.transport.write(&text);

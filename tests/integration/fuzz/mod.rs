@@ -23,8 +23,9 @@ use std::{
 
 use crate::{diagnostics::fixtures, format::all_scenes, random::Random};
 
-/// Maximum time for an input; a longer time counts as an endless loop. An input takes milliseconds,
-/// but a busy machine may pause for seconds. A longer limit would only delay the message.
+/// Maximum time for an input. If a test takes longer, it is regarded as an endless loop. An input
+/// takes milliseconds, but a busy machine may pause for seconds. A longer limit would only delay
+/// the message.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Calls `run` and returns its result. If it takes longer than [`PATIENCE`], prints the text of
@@ -53,10 +54,10 @@ const WORDS: &str = "0|-0|1|.5|5.|1e308|-1e308|1e309|1e-320|1e-400|9007199254740
     let|for i < 3|for|<|i|sphere|box|triangle|checkerboard|camera|image|sampler|eye|lookat|direction|fov|d|near|far|up|roll|center|radius|size|color|\
     colors|square|y|v0|v1|v2|normal|sides|method|per_pixel|total|seed|width|height|background|min|max|sqrt|rgb|exact|EYE|radus|pi|x|a";
 
-/// Calls `is_tried` with one random generator after another. Their number is `usual`, unless the
-/// environment variable `PINHOLE_FUZZ` gives another. Each generator depends only on its number. If
-/// a call panics or takes too long, prints the environment variables with which a run repeats only
-/// this call.
+/// Calls `is_tried` with random generators, one after another. There are `usual` generators, unless
+/// the environment variable `PINHOLE_FUZZ` gives another number. Each generator depends only on its
+/// index. If a call panics or does not end in time, prints the environment variables with which a
+/// run repeats only this call.
 pub fn each(usual: u64, mut is_tried: impl FnMut(&mut Random)) {
     struct Number(u64);
     impl Number {
@@ -80,7 +81,8 @@ pub fn each(usual: u64, mut is_tried: impl FnMut(&mut Random)) {
     }
 }
 
-/// Returns the texts of all scenes of the repository below 4000 bytes, including wrong scenes.
+/// Returns the texts of all scenes of the repository that are shorter than 4000 bytes, including
+/// scenes with mistakes.
 fn scenes() -> &'static [String] {
     static SCENES: LazyLock<Vec<String>> = LazyLock::new(|| {
         let wrong = fixtures().map(|(_, sources)| sources.file.text().to_owned());

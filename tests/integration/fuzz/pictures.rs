@@ -1,5 +1,5 @@
-//! Tests with random picture files: any bytes are decoded or refused, and never decoded beyond the
-//! limit on memory.
+//! Tests with random picture files. Each file is either decoded, within the limit on memory, or
+//! refused.
 
 use std::{io::Cursor, sync::LazyLock};
 

@@ -1,6 +1,6 @@
-//! A picture with which the grading is tested. Its title says everything about it: the scene, the
-//! size, samples per pixel, the sampling, and the mistakes. Pictures with 256 samples per pixel
-//! stand for exact pictures.
+//! A picture with which the grading is tested. Its title lists how it is made: the scene, the size,
+//! the samples per pixel, the sampling method, and the mistakes. Pictures with 256 samples per
+//! pixel stand for exact pictures.
 
 use image::RgbImage;
 use serde_json::Value;

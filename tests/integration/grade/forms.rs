@@ -120,8 +120,8 @@ fn gradescope_gets_a_score_only_where_it_is_known() {
         );
         for test in tests {
             assert_eq!(test["visibility"], "visible");
-            // A mistake may cost more points than one test's share of them, so the points are
-            // stated only for the whole submission.
+            // A mistake may cost more points than the points of a submission divided by the number
+            // of its tests. So points are stated only for the whole submission.
             assert!(test.get("score").is_none() && test.get("max_score").is_none());
         }
         let failed = tests.iter().filter(|test| test["status"] == "failed");
@@ -139,7 +139,8 @@ fn gradescope_gets_a_score_only_where_it_is_known() {
     assert_eq!(said.status, 1);
     let found: Value = serde_json::from_slice(&said.output).unwrap();
     assert_eq!(found["score"], 5.0);
-    // Without points, each test counts one, and their sum is the score.
+    // Without a scheme of points, each test gives at most one point, and the score is the sum over
+    // all tests.
     let sum = |key: &str| -> f64 {
         let tests = found["tests"].as_array().unwrap().iter();
         tests.filter_map(|test| test[key].as_f64()).sum()

@@ -8,9 +8,10 @@ impl Program {
     /// Returns the colour of the surface that a ray sees, and the factor by which shading
     /// multiplies the colour's light. The ray starts at `from`; `view` is the view direction.
     pub fn trace(&self, from: DVec3, ray: DVec3, view: DVec3) -> ([u8; 3], f64) {
-        // The program may treat surfaces behind the eye wrongly. It may compare the signed
-        // parameters t of the hits, so that surfaces behind the eye come first. Or it may compare
-        // all surfaces by their distance, whether they are in front of the eye or behind it.
+        // These are two of the mistakes in the treatment of surfaces behind the eye. With
+        // `Behind::First`, the signed parameters t of the hits are compared, so surfaces behind the
+        // eye come first. Otherwise, surfaces are compared by their distance, even those behind the
+        // eye.
         let order = |t: f64| {
             if self.behind == Behind::First {
                 t

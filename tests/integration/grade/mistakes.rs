@@ -13,9 +13,9 @@ use super::{
 
 /// A mistake that the program of a student may have.
 pub struct Mistake {
-    /// Answers of `diff` that are accepted for the mistake, separated by bars. Each answer is a
-    /// mistake's name; or a name and a part of its message; or the target of a `--set` argument,
-    /// such as `camera.roll`.
+    /// Answers of `diff` that are accepted for the mistake, separated by bars. An answer is a
+    /// mistake's name, which a part of the mistake's message may follow. It can also be the target
+    /// of a `--set` argument, such as `camera.roll`.
     pub name: &'static str,
     change: Change,
 }

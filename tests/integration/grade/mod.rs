@@ -161,8 +161,8 @@ fn answer(text: &str, sets: &[&str], file: &[u8]) -> Value {
 }
 
 /// Judges a picture with two mistakes: it is mirrored, and a sphere has a wrong radius. Only a part
-/// of the picture is handed in. What this part shows is on the other side of the right picture,
-/// outside of the same part.
+/// of the picture is handed in. This part is not symmetric, so its mirror image shows an area that
+/// is partly outside of it.
 #[test]
 fn a_part_of_a_mirrored_picture_with_one_more_mistake() {
     let scene = |sets: &[&str]| {

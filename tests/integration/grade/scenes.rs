@@ -6,11 +6,10 @@ use super::textbook::{
     Axes, Behind, Encoding, Object, Program, Roots, Sampling, Shape, Squares, Visible,
 };
 
-/// Returns the scene `name`, as a correct program and as text. `figure` is figure 9.9 with a roll
-/// of 10°. `street` has the same names of objects, a closer camera, a far plane and more objects.
-/// The other scenes are variants of `figure` for mistakes that need them: a near plane that clips
-/// objects, another lens, a low window, a box with different colours for its faces, a ball sunk
-/// into the floor, a leaning triangle, the floor as the first object, or no roll.
+/// Returns the scene `name`, as a correct program and as text. `figure` is figure 9.9 of the
+/// textbook, with a roll of 10°. `street` has a closer camera, a far plane and more objects;
+/// objects that are also in `figure` have the same names. Each other scene is a variant of `figure`
+/// with a property that some mistakes need, for example a near plane that clips objects.
 pub fn scene(name: &str) -> (Program, String) {
     let (mut program, mut text) = match name {
         "street" => (street(), STREET.to_owned()),

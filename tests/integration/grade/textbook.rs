@@ -3,8 +3,8 @@
 //! Pinhole, so its pictures are independent evidence.
 //!
 //! In: a [`Program`], i.e. a scene and the way in which a student's program treats it. Out: a
-//! picture in bytes. Many fields of a program choose a mistake; the module `mistakes` lists the
-//! mistakes that students make.
+//! picture in bytes. A program has fields for the mistakes that it can make; the module `mistakes`
+//! lists these mistakes.
 
 use std::array;
 
@@ -30,7 +30,6 @@ pub enum Shape {
 pub struct Object {
     /// Name of the object in the text of the scene.
     pub name: &'static str,
-    /// Shape of the object.
     pub shape: Shape,
     /// Colour of the object; for a checkerboard, its first colour.
     pub color: [u8; 3],
@@ -73,47 +72,46 @@ pub enum Behind {
     First,
 }
 
-/// The way in which a student's program computes the number of a checkerboard's square from the
-/// coordinates x and z, in units of the square's side. Squares with odd numbers have the second
-/// colour.
+/// The way in which a student's program numbers the squares of a checkerboard. A square's number is
+/// computed from the coordinates x and z of a point in it, in units of the square's side. Squares
+/// with odd numbers have the second colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Squares {
-    /// The number of a square is the sum of its two coordinates, each rounded down. This is
-    /// correct.
+    /// The number of the square at the point (x, z) is ⌊x⌋ + ⌊z⌋, which is correct.
     Floored,
-    /// The number of a square is the sum of its two coordinates, each truncated towards zero.
+    /// The number of the square at the point (x, z) is the sum of x and z, each truncated towards
+    /// zero.
     Truncated,
-    /// The number of a square is the sum of its two coordinates, each rounded down. The program
-    /// regards the number as odd if its remainder after division by 2 is 1. The remainder of a
-    /// negative odd number is −1, so the program regards it as even.
+    /// The number of the square at the point (x, z) is ⌊x⌋ + ⌊z⌋. The program regards it as odd if
+    /// its remainder after division by 2 is 1. The remainder of a negative odd number is −1, so the
+    /// program regards such a number as even.
     Remainder,
-    /// Both coordinates are rounded down. The program regards the square's number as odd if the
-    /// coordinates leave different remainders after division by 2. This fails if one coordinate is
-    /// odd and positive and the other odd and negative: their remainders 1 and −1 differ.
+    /// The program regards the square at the point (x, z) as odd if ⌊x⌋ and ⌊z⌋ leave different
+    /// remainders after division by 2. This fails if one of them is odd and positive and the other
+    /// odd and negative: their remainders 1 and −1 differ.
     Remainders,
-    /// The number of a square is the sum of its two coordinates, each rounded to the nearest
-    /// integer.
+    /// The number of the square at the point (x, z) is the sum of x and z, each rounded to the
+    /// nearest integer.
     Rounded,
-    /// The first coordinate is rounded to the nearest integer, the second one down. The number of a
-    /// square is their sum, so the board is moved by half a square along x.
+    /// The number of the square at the point (x, z) is the sum of x, rounded to the nearest
+    /// integer, and ⌊z⌋. So the board is moved by half a square along x.
     Moved,
-    /// The two coordinates are added first. The number of a square is their sum, rounded down.
+    /// The number of the square at the point (x, z) is ⌊x + z⌋.
     Sum,
-    /// The number of a square is the first coordinate, rounded down, so that the board has stripes.
+    /// The number of the square at the point (x, z) is ⌊x⌋, so that the board has stripes.
     Stripes,
-    /// The number of a square is the second coordinate, rounded down, so that the board has
-    /// stripes.
+    /// The number of the square at the point (x, z) is ⌊z⌋, so that the board has stripes.
     StripesZ,
-    /// The number of a square is the first coordinate, truncated towards zero, plus the second
-    /// coordinate, rounded down.
+    /// The number of the square at the point (x, z) is the sum of x, truncated towards zero, and
+    /// ⌊z⌋.
     TruncatedX,
-    /// The first coordinate is rounded down, the second one to the nearest integer. The number of a
-    /// square is their sum, so the board is moved by half a square along z.
+    /// The number of the square at the point (x, z) is the sum of ⌊x⌋ and of z, rounded to the
+    /// nearest integer. So the board is moved by half a square along z.
     MovedZ,
     /// The board is turned by 45 degrees. The number of a square is the sum of its coordinates on
     /// the turned board, each rounded down.
     Turned,
-    /// A square gets the first colour only if both coordinates, rounded down, are even.
+    /// The square at the point (x, z) gets the first colour only if ⌊x⌋ and ⌊z⌋ are both even.
     BothEven,
     /// A square gets the second colour if sin(x) · sin(z) is negative, where x and z are the
     /// coordinates in units of the square's side.
@@ -156,8 +154,8 @@ pub enum Axes {
     LongRays,
     /// All rays have the same direction, −w, i.e. the view direction.
     Parallel,
-    /// All rays are parallel. The window is moved from the view plane to `lookat` and enlarged, so
-    /// that it still fills the same field of view.
+    /// All rays are parallel, in the view direction. They pass through a window that is moved to
+    /// `lookat` and enlarged, so that objects there appear in about the right size.
     ParallelFromLookat,
 }
 
@@ -247,7 +245,7 @@ pub struct Program {
     pub behind: Behind,
     pub visible: Visible,
     pub squares: Squares,
-    /// Number that the program adds to the number of each square ([`Squares`]); 0 is correct, and 1
+    /// Offset that the program adds to the index of each square ([`Squares`]); 0 is correct, and 1
     /// swaps the colours of a checkerboard.
     pub parity: i64,
     pub encoding: Encoding,
@@ -358,8 +356,8 @@ impl Program {
     }
 
     /// Decodes a channel of a colour, from 0 to 1, to light. If the program encodes light by a
-    /// power, uses the inverse power; otherwise, uses the curve of sRGB. So the mistakes
-    /// [`Encoding::None`] and [`Encoding::Twice`] change colours.
+    /// power, uses the inverse power, so that the colours of the scene reappear in the picture.
+    /// Otherwise uses the curve of sRGB.
     fn decode(&self, part: f64) -> f64 {
         match self.encoding {
             Encoding::Power(power) => libm::pow(part, power),

@@ -1,4 +1,5 @@
-//! Compares the meanings and the diagnostics of texts with the files in `tests/language`.
+//! Compares the scenes that texts describe, and the diagnostics of texts, with the files in
+//! `tests/language`.
 
 use pinhole::{
     diagnostic::{Diagnostic, Fix, apply},
@@ -40,8 +41,8 @@ fn said(_: &Sources, found: &Diagnostic) -> String {
     format!("{}: {} | {label} | {help}", code(found), found.message)
 }
 
-/// Returns `text` without the part in brackets, followed by the title of the fix that removes this
-/// part. The fix is made by `remove`. Its title mentions removed comments.
+/// Applies the fix that `remove` makes for the part of `text` in brackets, and returns the
+/// resulting text followed by the fix's title.
 fn without(text: &str, remove: fn(String, Span, &Sources) -> Fix) -> String {
     let (start, end) = (text.find('[').unwrap(), text.find(']').unwrap() - 1);
     let sources = sources(&text.replace(['[', ']'], ""));

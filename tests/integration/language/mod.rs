@@ -1,5 +1,5 @@
-//! Tests of the meanings of scenes, and of the agreement of the language's reference with the
-//! program.
+//! Tests of what scene files mean, i.e. of the scenes read from them, and of the agreement of the
+//! language's reference with the program.
 
 mod answers;
 mod help;

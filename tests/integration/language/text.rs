@@ -71,7 +71,7 @@ fn nesting_beyond_256_levels_is_an_error() {
         assert_eq!(of(open, inner, close, levels), "", "{open}");
         assert_eq!(of(open, inner, close, levels + 1), "too_deep", "{open}");
     }
-    // The terms of a sum do not count as nested.
+    // The terms of a sum are not nested, so any number of them is allowed.
     let wide = vec!["-(1)"; 5000].join(" + ");
     assert_eq!(of("", &wide, "", 0), "");
 }

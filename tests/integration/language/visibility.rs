@@ -1,5 +1,5 @@
 //! Tests of the warnings about cameras that see nothing, and about squares too small to be visible.
-//! The warnings must never be false. They must be given in most cases in which they are true.
+//! A warning must never be false. Most pictures to which a warning applies must cause it.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,5 @@
-//! Tests of pictures: rendered, made from pixels, saved, read and judged.
+//! Tests of the library's pictures: rendering, saving and reading them, making them from pixels,
+//! and judging them.
 
 use std::{fs, sync::atomic::AtomicBool};
 
@@ -96,7 +97,7 @@ fn an_area_is_rendered_under_control() {
         let part = scene.render_with(area, &Control::default()).unwrap();
         let whole = scene.render().unwrap();
         assert_eq!(part.film(), &whole.film().part(area).unwrap());
-        // The picture knows its place in the whole picture, and so does its file.
+        // The picture has stored its position in the whole picture, and so has its file.
         let verdict = scene.grade(&part).unwrap().to_string();
         assert!(verdict.starts_with("right"), "{verdict}");
         for ending in ["png", "exr"] {

@@ -1,5 +1,5 @@
-//! A client of a language server in the process of the test. A test can advance this server in
-//! small steps.
+//! A client whose language server runs in the same process as the test. The test can advance this
+//! server in small steps.
 
 use std::{cell::RefCell, collections::VecDeque};
 
@@ -11,7 +11,8 @@ use serde_json::{Value, json};
 
 use super::client::{Client, Transport};
 
-/// A client of a server in the process of the test. It has one open text, which has the version 1.
+/// A client whose server runs in the same process as the test. It has one open text, which has the
+/// version 1.
 pub type LocalClient = Client<InProcess>;
 
 thread_local! {
@@ -23,7 +24,8 @@ pub fn logged() -> Vec<String> {
     LOG.take()
 }
 
-/// A server in the process of the test, with the messages that the client has not read yet.
+/// A server that runs in the same process as the test, with the messages that the client has not
+/// read yet.
 pub struct InProcess {
     server: Server,
     pub said: VecDeque<String>,

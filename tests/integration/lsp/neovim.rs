@@ -80,7 +80,8 @@ const ASKED: &[Typed] = &[
 /// Completions that Neovim offers while the user types, as rows of [`Typed`]. They are tested only
 /// with Neovim 0.11 or later and the configuration that the documentation for editors gives.
 const OFFERED: &[Typed] = &[
-    // While a word is typed, nothing is inserted before the user chooses a completion.
+    // In the next row, the menu is open, but the user chooses no completion. So nothing is
+    // inserted.
     ["$0\ncamera {}", "s menu p h", "sph"],
     [
         "$0\ncamera {}",
@@ -105,7 +106,7 @@ const OFFERED: &[Typed] = &[
 fn neovim_completes_while_typing() {
     let version = Command::new("nvim").arg("--version").output();
     let version = String::from_utf8(version.expect("Neovim is on the path").stdout).expect("text");
-    // The module `vim.lsp.completion` exists since Neovim 0.11.
+    // Neovim has the module `vim.lsp.completion` from version 0.11 on.
     let is_new = !["v0.7.", "v0.8.", "v0.9.", "v0.10."]
         .iter()
         .any(|old| version.contains(old));

@@ -78,7 +78,8 @@ fn a_slider_never_reaches_a_value_that_is_an_error() {
             "camera { eye (0, 0, 9) lookat (0, 0, 0) fov 2 * a }",
             json!([1.0, 89.0, 1.0, [1.0, 89.0]]),
         ),
-        // The number is used directly and in a formula. Its limits come from both uses.
+        // The number is used as it is in one field, and in a formula in another. The limits of both
+        // fields apply.
         (
             "1",
             "sphere { radius a }\nsphere { radius 3 - a }",

@@ -62,7 +62,8 @@ fn checkerboard_outlines_stop_at_objects_in_front_of_them() {
         (2, "sphere { center (0, -5, 0) radius 1 }", 1),
         (2, "sphere { center (1, 0.3, 0) radius 0.6 }", 2),
         (2, "sphere { center (0.5, 0.5, 3) radius 1 }", 0),
-        // The eye is above the large square, whose sides are partly far outside of the picture.
+        // The eye is above the square of side 900. The square's sides are partly far outside of the
+        // picture.
         (900, "sphere { center (0, 0.1, 3) radius 0.02 }", 3),
     ] {
         let board = format!("{camera} checkerboard {{ square {square} }}");
@@ -359,7 +360,7 @@ fn a_drag_with_a_step_snaps_to_round_numbers() {
                 .expect("a number")
         });
         // In the picture, 1 m is 90 pixels, so the pointer moves the centre to x = 0.123 + `by`/90.
-        // The new x must be a multiple of 0.01 m and differ from this by less than 0.02 m.
+        // The new x must be a multiple of 0.01 m, and at most 0.02 m from the pointer.
         match x {
             None => assert!(f64::abs(by) < 0.5, "{by}: {found}"),
             Some(x) => {

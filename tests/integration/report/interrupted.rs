@@ -9,7 +9,7 @@ const SLOW: &str = "image { width 100 height 100 } camera { eye (0, 1, 5) lookat
 fn ctrl_c_keeps_what_was_measured() {
     let folder = folder();
     folder.write("slow.scn", SLOW);
-    // The first of ten thousand runs end soon, but all together take long enough to be interrupted.
+    // A run ends soon, but ten thousand runs take long enough to be interrupted.
     let line = "report slow.scn -o out --format json --samples 1,2 --runs 10000 --methods sobol,exact --threads 1";
     let answer = interrupted(&mut folder.command(line), 1000).json();
     assert_eq!(answer["complete"], false);

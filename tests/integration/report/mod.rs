@@ -55,15 +55,16 @@ fn a_report_prints_a_table_and_one_recommendation() {
         .map(|method| row(method.name()))
         .into_iter()
         .partition(|row| row[1] == "bends");
-    // With few samples, `scatter` leaves pixels empty. The line through its measured points then
-    // bends, so no slope is given for it.
+    // `scatter` leaves pixels empty if there are few samples. Its points in the logarithmic chart
+    // of the error over the number of samples are then not near a straight line, so no slope is
+    // given.
     assert!(bent.iter().all(|row| row[2..4] == ["–", "–"]), "{text}");
     assert!(bent.iter().any(|row| row[0] == "scatter"), "{text}");
     assert!(rows.len() >= 5 && text.contains("\nbends: "), "{text}");
     for row in rows {
-        // Words in a row are cells, so the row has twelve. The third cell, `±`, precedes the error
-        // of the slope. The seventh, `×`, follows the factor by which the number of samples must
-        // grow for a tenth of the error.
+        // Rows are split at white space, so the signs `±` and `×` are two of the twelve words. `±`
+        // precedes the error of the slope. `×` follows the factor by which the number of samples
+        // must grow for a tenth of the error.
         assert_eq!((row.len(), row[2], row[6]), (12, "±", "×"), "{row:?}");
         // The slope is negative. The measured samples are too few for an error of 1/256, so `~`
         // marks the needed number of samples and the time as extrapolated.
@@ -170,8 +171,8 @@ fn the_inner_edges_of_a_box_are_edges_and_no_board() {
     let faces = shares("colors (tan, wheat, peru) }");
     assert!(faces[0] > plain[0], "{faces:?} {plain:?}");
     assert_eq!([plain[1], faces[1]], [0.0; 2]);
-    // A board behind the box must not reduce the number of edge pixels: the edges between the box's
-    // faces are not attributed to the board.
+    // Adds a board behind the box. The edges between the box's faces must not be attributed to the
+    // board, so the number of edge pixels must not fall.
     let on_board = shares("colors (tan, wheat, peru) } checkerboard {}");
     assert!(on_board[0] >= faces[0] && on_board[1] > 0.0, "{on_board:?}");
 }

@@ -121,7 +121,8 @@ fn a_slope_needs_a_factor_of_four_and_a_line_that_does_not_bend() {
     }
 }
 
-/// A bend of the line is reported only if it is larger than the noise of the runs.
+/// The logarithm of the error over the logarithm of the number of samples is nearly a straight
+/// line. A bend of this line is reported only if it is larger than the noise of the runs.
 #[test]
 fn noise_does_not_bend_a_line() {
     let run = |error| Run {

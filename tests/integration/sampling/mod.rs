@@ -79,8 +79,8 @@ fn seeds_and_pixels_share_no_points() {
         if matches!(method, Method::Regular) {
             continue;
         }
-        // The method `scatter` gives different pixels different numbers of points, so each pixel's
-        // number is asked for.
+        // The method `scatter` gives different pixels different numbers of points, so the number is
+        // determined for each pixel.
         let of = |seed, pixel: [u32; 2]| {
             let sampling = sampling(method, 5, seed);
             points_at(&sampling, pixel, 0..sampling.count(pixel[0], pixel[1]))

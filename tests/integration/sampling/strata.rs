@@ -1,5 +1,5 @@
-//! Tests of the strata of each method's points, i.e. the equal parts of a pixel that contain one
-//! point each. They are computed in integer arithmetic.
+//! Tests of strata, i.e. equal parts of a pixel that contain one point each. The stratum of a point
+//! is computed in integer arithmetic.
 
 use std::collections::HashSet;
 

@@ -235,8 +235,8 @@ fn a_connection_without_the_token_is_closed() {
 fn a_client_without_the_token_is_disconnected_after_five_seconds() {
     let (_folder, studio) = studio();
     let upgrade = upgrade(&studio);
-    // The bytes of `ping` are a ping frame; those of `text` are the start of a text frame of 100
-    // bytes.
+    // `ping` ends with a ping frame, and `text` with the first bytes of a text frame that announces
+    // 100 bytes.
     let ping = [upgrade.as_bytes(), &[0x89, 0x80, 0, 0, 0, 0]].concat();
     let text = [upgrade.as_bytes(), &[0x81, 0xe4, 0, 0, 0, 0, 1]].concat();
     thread::scope(|scope| {

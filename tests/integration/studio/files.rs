@@ -18,8 +18,8 @@ fn save(page: &mut Client<Page>, text: &str, base: Option<&str>) -> Value {
     page.respond("studio/save", json!({ "text": text, "base": base }))
 }
 
-/// Waits for the host's next message about the file. Returns the file's text, and the reason if
-/// there is no text.
+/// Waits for the host's next message about the file. Returns the file's text, and the reason why
+/// the file cannot be read, if there is one.
 fn told(page: &mut Client<Page>) -> [Value; 2] {
     let mut file = page.notification("studio/file");
     ["text", "reason"].map(|field| file[field].take())
@@ -189,7 +189,7 @@ fn a_new_scene_is_saved_only_under_an_unused_name() {
     assert_eq!(outer.text("inner/there.scn"), "// there");
     assert_eq!(save(&mut page, json!("new one.scn"))["result"], saved());
     assert_eq!(outer.text("inner/new one.scn"), "// new");
-    // After its first save, the new scene is an ordinary file for all pages.
+    // After its first save, both pages are notified of the new scene, as of any saved file.
     for page in [&mut page, &mut other] {
         assert_eq!(
             page.notification("studio/file"),

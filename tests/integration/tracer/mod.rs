@@ -1,6 +1,6 @@
 //! Compares the tracer with an independent tracer in arithmetic of high precision, the oracle. Most
-//! compared points are within a few units in the last place of a boundary. The tests of `numerics`
-//! cover the catalogue of hard cases.
+//! compared points are within a few units in the last place of a boundary between two colours of
+//! the picture. The tests of `numerics` cover the catalogue of hard cases.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 pub use pinhole::reference::scenes::{camera, cuboid, scene, sphere};
@@ -37,8 +37,8 @@ pub fn floor() -> Shape {
     scenes::board(0.0, 1.0)
 }
 
-/// Returns whether the camera does not look along its up vector. If it does, the coordinate axes
-/// determine its orientation instead.
+/// Returns whether the camera's up vector determines its orientation. If the camera looks along
+/// this vector, the coordinate axes do so instead.
 pub fn is_upright(scene: &Scene) -> bool {
     let Camera { eye, view, up, .. } = scene.camera;
     let direction = match view {
@@ -215,9 +215,9 @@ fn lenses_at_the_limits_of_f64_show_the_right_objects() {
             "image {{ width 64 height 64 }} camera {{ eye (0, 0, 5) direction (0, 0, -1) {lens} }}
              box {{ min (-1, -1, -1) max (0, 1, 0) }} box {{ min (0, -1, -1) max (1, 1, 0) }}"
         )));
-        // The red value is 1 or 2 for the first or second box, and 0 for the background. The boxes
-        // touch in a face that is seen edge-on, in the middle of the picture: between the columns
-        // 31 and 32.
+        // The red value is 1 for the first box, 2 for the second, and 0 for the background. The
+        // boxes touch in a face that is seen edge-on, in the middle of the picture: between the
+        // columns 31 and 32.
         for (x, seen) in [0, 31, 32, 63].into_iter().zip(seen.split(' ')) {
             let found = both.color(x, 31, random.offset())[0];
             assert_eq!(found.to_string(), seen, "{lens}: {x}");

@@ -12,9 +12,9 @@ use super::{LATER_TERMS_SHARE, MODE_TERMS, amplitudes, last_mode, lerch::lerch, 
 use crate::math::{Double, Real};
 
 /// Maximum truncation error of a sum over an edge's crossings, as a fraction of the pixel's
-/// tolerance. It holds if the depth less than doubles along the edge. If the fraction
-/// [`LATER_TERMS_SHARE`] of the edge's own tolerance is larger, this is the limit instead. A
-/// thousandth hardly adds to the pixel's error.
+/// tolerance, if the depth less than doubles along the edge. A thousandth hardly adds to the
+/// pixel's error. An edge with a large tolerance of its own may use the fraction
+/// [`LATER_TERMS_SHARE`] of that tolerance, if this is more.
 const LEVEL_TRUNCATION: f64 = 1e-3;
 /// Minimum ratio of the depth in the middle of an edge to the change of the depth along the edge,
 /// at which the depth is treated as constant. This approximation adds at most 4/STEADY, about 1e-6,
@@ -85,11 +85,11 @@ pub(super) fn sum(
     let later: f64 = (MODE_TERMS + 1..=series.terms)
         .map(|k| lines * series.size(k, all.depth))
         .sum();
-    // If the depth m is treated as constant, m^−s with the exponent s of a term differs from its
-    // value in the middle by at most s·gN/2m of this value. N is the number of crossings, and g the
-    // step of m between them. Otherwise, each of the two Lerch series has an error of about 500
-    // roundings of w/2 times its first term, and a truncation error of at most 0.04·s·(s + 1)/w² of
-    // its first term.
+    // If the depth m is treated as constant, m^−s is replaced by its value in the middle of the
+    // edge, where s is 3, 4 or 5. The relative error is at most s·gN/2m. Here N is the number of
+    // crossings, and g is the change of m from one crossing to the next. If m is not treated as
+    // constant, each of the two Lerch series has an error of about 500 roundings of w/2 times its
+    // first term, and a truncation error of at most 0.04·s·(s + 1)/w² of its first term.
     let model = if is_steady {
         4.0 / STEADY
     } else {

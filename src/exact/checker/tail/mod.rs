@@ -1,4 +1,5 @@
-//! Sums over the lines that an edge crosses, if they are very many or infinitely many.
+//! Sums over the lines that an edge crosses, if there are very many or infinitely many of these
+//! lines.
 //!
 //! In: an edge's crossings with the lines of one family, and the series X of
 //! [`green`](super::green). Out: Σ (−1)^j·X over the crossings j, with a bound on truncation and
@@ -141,9 +142,9 @@ pub(super) fn sum(
 }
 
 /// Returns the amplitudes of the first three terms of the series ([`EdgeSeries`]) in the Fourier
-/// mode n = 1. The amplitude of a term is its factor in `series.factors` times a scale. The scale
-/// of the first term is `first`; `next` computes the scale of each later term from the previous
-/// scale.
+/// mode n = 1. The amplitude of a term is its factor in `series.factors`, multiplied by a number
+/// that depends only on the term's position. For the first term, this number is `first`. `next`
+/// maps the number of one term to that of the next.
 fn amplitudes(series: &EdgeSeries, first: f64, next: impl Fn(f64) -> f64) -> [f64; MODE_TERMS] {
     let (mut amplitudes, mut unit) = ([0.0; MODE_TERMS], first);
     for (amplitude, factor) in amplitudes.iter_mut().zip(&series.factors[1..=series.terms]) {
@@ -168,9 +169,9 @@ fn last_mode(size: f64, limit: f64, trivial: f64, budget: &PixelBudget) -> Optio
 }
 
 /// Returns the Fourier mode `n` of the first three terms of the series ([`EdgeSeries`]), summed
-/// over an edge's crossings. `amplitudes` are those of mode 1 ([`amplitudes`]). `sums` are the
-/// sums, over the crossings, of the mode's complex exponential divided by the depth to the power s
-/// = 3, 4 and 5. The unit of the depth is its step from crossing to crossing.
+/// over an edge's crossings. `amplitudes` are those of mode 1 ([`amplitudes`]). `sums` contains the
+/// sum of e^(iφ)·m^(−s) over the crossings for s = 3, 4 and 5, where φ is the mode's phase and m
+/// the depth at a crossing. `amplitudes` and `sums` must have the same unit of depth.
 fn mode(n: f64, amplitudes: &[f64; MODE_TERMS], sums: [Complex; MODE_TERMS]) -> f64 {
     let per_mode = 1.0 / n;
     let cube = per_mode * per_mode * per_mode;

@@ -51,9 +51,9 @@ pub(super) fn start(all: &LineCrossings, series: &EdgeSeries, tolerance: f64) ->
     let kappa =
         (factor * 4.0 / (PI * PI * PI) / (2.0 * g) / (4.0 * BEYOND_LAST_SHARE * tolerance)).sqrt();
     let cheapest = (0.5 * MODE_COST * kappa * g).sqrt();
-    // At the depth `nothing`, the first terms of the edge's series ([`EdgeSeries`]) at all later
-    // crossings add up to at most half of the share `SKIPPED_SHARE`, so the rest is usually
-    // negligible. At the depth m, the first term is at most `factor`·½/π·m^−3.
+    // At the depth `nothing`, the rest of the sum is usually negligible: the first terms of the
+    // edge's series ([`EdgeSeries`]) at all later crossings add up to at most half of what
+    // `SKIPPED_SHARE` allows. At the depth m, the first term is at most `factor`·½/π·m^−3.
     let nothing = (factor * 0.25 / PI / g / (0.5 * SKIPPED_SHARE * tolerance)).sqrt() + g;
     // `steep` and `fourth` are depths at which two errors reach their limits. The truncation error
     // of a mode falls as w^−5, and the sum of the terms of the series X from the fourth term on as
@@ -150,9 +150,10 @@ pub(super) fn sum_from(
     }
 }
 
-/// Returns an upper bound of the sum, over all crossings from the depth `depth` on, of the absolute
-/// values of term `k` of an edge's series ([`EdgeSeries`]). `rise` is the step of the depth from
-/// crossing to crossing.
+/// Returns an upper bound of the sum of the absolute values of term `k` of an edge's series
+/// ([`EdgeSeries`]). The sum is over all points, from the depth `depth` on, at which the edge
+/// crosses a line of the board. `rise` is the change of the depth from one of these points to the
+/// next.
 fn absolute(series: &EdgeSeries, k: usize, depth: f64, rise: f64) -> f64 {
     series.size(k, depth) * (1.0 + depth / (rise * (k + 1) as f64))
 }

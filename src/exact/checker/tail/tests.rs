@@ -1,4 +1,5 @@
-//! Compares sums over crossings, and their error bounds, with sums that are added term by term.
+//! Compares sums over the points where an edge crosses lines of a board, and their error bounds,
+//! with sums that are added term by term.
 
 use std::cell::RefCell;
 
@@ -15,7 +16,8 @@ use super::{
 };
 use crate::{cancel, math::two_sum, reference::tightness::Tightness};
 
-/// An edge: its crossings, and the series at each.
+/// An edge of a polygon: the points where it crosses lines of a board, and the series that gives
+/// its contribution at each.
 #[derive(Debug)]
 struct Edge {
     all: LineCrossings,

@@ -138,9 +138,9 @@ fn a_square_that_goes_to_the_horizon_is_known() {
         let board = view.board();
         let BoundedSum { value, bound } = board.alone(&PIXEL);
         assert!(bound < 1e-9, "{bound} of {view:?}");
-        // A little more than half of the pixel, 0.51, shows the floor. Nearly all of this is a
-        // single square, because the eye is above this square, at least 0.3 squares away from all
-        // others.
+        // A little more than half of the pixel, 0.51, shows the floor. The eye is above one square,
+        // at least 0.3 squares away from all others, so nearly all of the visible floor is this
+        // square.
         let others = view.focal * view.height / 0.3;
         let is_one = (value - 0.51).abs() <= bound + 2.0 * others;
         assert!(is_one, "{value} of {view:?}");
