@@ -4,7 +4,7 @@ import { newestOf } from "./dom";
 import { editor } from "./editor";
 import { overlays } from "./overlays";
 import { picture } from "./picture";
-import type { Pick, Point, Samples } from "./protocol";
+import type { Pick, Point } from "./protocol";
 import { point as tell } from "./status";
 
 /** Position of the pointer over the picture, in screen pixels; null if it is elsewhere. */
@@ -20,6 +20,9 @@ picture.stage.addEventListener("pointerleave", () => {
   void hover(null);
 });
 
+/** Returns the point of the picture under the pointer; null if the pointer is elsewhere. */
+export function pointedAt(): Point | null { return place && picture.toPicture(place); }
+
 /** Finds again what is under the pointer, because the picture may have changed. */
 export function hoverAgain(): void { if (place !== null) void hover(picture.toPicture(place)); }
 
@@ -27,8 +30,4 @@ const hover = newestOf(async (at: Point | null) => {
   const pick = at && await editor.ask<Pick>("pinhole/pick", { point: at });
   tell(pick?.text ?? "");
   overlays.hover(pick?.object?.index ?? null);
-  const pixel = pick?.pixel;
-  if (!pixel || !overlays.isOn("samples")) return overlays.showSamples(null);
-  const samples = await editor.ask<Samples>("pinhole/samples", { pixel });
-  overlays.showSamples(samples && { pixel, samples });
 });

@@ -10,6 +10,7 @@ import { draftChanged, offerDrafts } from "./drafts";
 import { editor } from "./editor";
 import { files, sceneHistory } from "./files";
 import { frames } from "./frames";
+import { glass } from "./glass";
 import { hoverAgain } from "./hover";
 import { hintField, openSwatch, refreshHints } from "./hints";
 import "./layout";
@@ -85,6 +86,7 @@ function rested(): void {
   clearTimeout(resting);
   resting = setTimeout(() => {
     hoverAgain();
+    glass.changed();
     void refreshHints();
     void refreshSliders();
     void listObjects();

@@ -2,19 +2,14 @@
 
 import { byId, createSvg, remember, remembered } from "./dom";
 import { picture } from "./picture";
-import type { Overlays, Point, Polyline, Samples } from "./protocol";
+import type { Overlays, Point, Polyline } from "./protocol";
 import { setText } from "./visible";
 
 /** Names of the optional layers. Their checkboxes in the menu have the same names. */
-export type Layer = "outlines" | "vanishing" | "horizon" | "axis" | "grid" | "near" | "samples";
+export type Layer = "outlines" | "vanishing" | "horizon" | "axis" | "near";
 
 const boxes = [...document.querySelectorAll<HTMLInputElement>("#layers input")];
 
-/** Minimum zoom at which the pixel grid is drawn, in screen pixels per pixel. Chosen by eye: at a
- * lower zoom, the lines would hide the picture. */
-const GRID_ZOOM = 6;
-/** Minimum zoom at which samples are drawn, in screen pixels per pixel. Chosen by eye. */
-const SAMPLES_ZOOM = 4;
 /** Distance of arrows from the border of the picture's area, in screen pixels; chosen by eye. */
 const EDGE = 14;
 
@@ -29,7 +24,8 @@ class OverlayLayer {
    * the pointer reaches an object without overlays. */
   onNeed: () => void = () => {};
   selected: number | null = null;
-  private samples: { pixel: Point; samples: Samples } | null = null;
+  /** Column and row of the pixel under the glass, which is marked; null if there is none. */
+  private pinned: Point | null = null;
 
   constructor(private readonly svg: SVGElement) {
     const layers = remembered("layers")?.split(" ") ?? [];
@@ -58,9 +54,9 @@ class OverlayLayer {
     if (hovered !== null && !this.data?.objects.some(it => it.index === hovered)) this.onNeed();
   }
 
-  showSamples(samples: typeof this.samples): void {
-    if (samples === null && this.samples === null) return;
-    this.samples = samples;
+  /** Marks a pixel, or none. */
+  pin(pixel: Point | null): void {
+    this.pinned = pixel;
     this.draw();
   }
 
@@ -75,7 +71,10 @@ class OverlayLayer {
       const d = lines.map(line => `M${line.join("L")}`).join("");
       if (d !== "") group.append(...twice({ d }, name));
     };
-    if (this.isOn("grid") && picture.zoom >= GRID_ZOOM) path("grid", grid());
+    if (this.pinned !== null) {
+      const [x, y] = this.pinned;
+      path("pinned", [[[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1], [x, y]]]);
+    }
     if (this.isOn("near")) for (const it of ["near", "far"] as const) path(it, data[it]);
     if (this.isOn("horizon") && data.horizon !== null) path("horizon", [data.horizon]);
     const vanishing = this.isOn("vanishing") ? data.vanishing : [];
@@ -86,7 +85,6 @@ class OverlayLayer {
     }
     for (const { axis, point } of vanishing) if (point) this.mark(point, `axis-${axis}`, axis);
     if (this.isOn("axis")) this.mark(data.axis, "view-axis", "view axis");
-    if (this.isOn("samples")) this.drawSamples();
   }
 
   /** Marks a point and its coordinates. If it is out of view, an arrow points to it. */
@@ -113,48 +111,18 @@ class OverlayLayer {
 
   /** Yields messages that say why enabled layers are not visible. */
   private *unseen(data: Overlays): Generator<string> {
-    const { zoom } = picture;
-    if (this.isOn("grid") && zoom < GRID_ZOOM) yield "The pixel grid shows when you zoom in.";
     if (this.isOn("horizon") && data.horizon === null) yield "The horizon is not near the picture.";
     if (this.isOn("near") && data.near.length + data.far.length === 0) {
       yield "Near and far cut no checkerboard that is seen.";
     }
     const parallel = this.isOn("vanishing") ? data.vanishing.filter(it => it.point === null) : [];
     for (const { axis } of parallel) yield `Lines along ${axis} stay parallel in this picture.`;
-    if (this.isOn("samples") && zoom < SAMPLES_ZOOM) yield "Samples show when you zoom in.";
-  }
-
-  private drawSamples(): void {
-    if (this.samples === null || picture.zoom < SAMPLES_ZOOM) return;
-    const { pixel, samples } = this.samples;
-    const [x, y] = picture.toScreen(pixel);
-    const size = picture.zoom;
-    this.svg.append(createSvg("rect", { x, y, width: size, height: size, class: "line sampled" }));
-    samples.points.forEach(([dx, dy], i) => {
-      const dot = createSvg("circle", { cx: x + dx * size, cy: y + dy * size,
-        r: Math.max(2, Math.min(5, size / 12)), class: "sample" });
-      dot.style.fill = samples.colors[i] ?? "";
-      this.svg.append(dot);
-    });
   }
 }
 
 /** Returns a light line over a dark one. One of them is visible on any background. */
 function twice(shape: Record<string, string>, name: string): SVGElement[] {
   return ["under ", ""].map(it => createSvg("path", { ...shape, class: `line ${it}${name}` }));
-}
-
-/** Returns the lines of the grid that separate the visible pixels. */
-function grid(): Polyline[] {
-  const { stage, size } = picture;
-  const [left, top] = picture.toPicture([0, 0]);
-  const [right, bottom] = picture.toPicture([stage.clientWidth, stage.clientHeight]);
-  const [x0, x1] = [Math.max(0, Math.floor(left)), Math.min(size[0], Math.ceil(right))];
-  const [y0, y1] = [Math.max(0, Math.floor(top)), Math.min(size[1], Math.ceil(bottom))];
-  const lines: Polyline[] = [];
-  for (let x = x0; x <= x1; x++) lines.push([[x, y0], [x, y1]]);
-  for (let y = y0; y <= y1; y++) lines.push([[x0, y], [x1, y]]);
-  return lines;
 }
 
 export const overlays = new OverlayLayer(document.querySelector("#lines") as SVGElement);

@@ -59,7 +59,17 @@ export interface Slider { name: string; range: Range; limits: Limits | null; not
 
 /** Edits that add a block, the name of its object, and an offset in the block for the cursor. */
 export interface Added { edits: TextEdit[]; name: string | null; cursor: number }
-export interface Samples { points: Point[]; colors: string[]; color: string }
+export interface Samples { points: Point[]; colors: string[]; color: string; mean: number[] }
+
+export interface Glass {
+  png: string;
+  seen: { color: string; share: number; label: string | null; object: number | null }[];
+  mean: number[];
+  color: string;
+  bound: number;
+  counts: number[];
+  errors: { method: string; typical: number[]; own: number[] }[];
+}
 
 /** The host's file. `text` is null if the file does not exist or cannot be read. */
 export interface HostedFile {
