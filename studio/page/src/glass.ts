@@ -1,7 +1,7 @@
 // The glass: one pixel enlarged, with its samples by a chosen method, its exact colour, and a chart
 // of its errors by all methods.
 
-import { byId, create, createSvg, fromBase64, newestOf } from "./dom";
+import { byId, create, createSvg, fromBase64, newestOf, remember, remembered } from "./dom";
 import { editor } from "./editor";
 import { pointedAt } from "./hover";
 import { overlays } from "./overlays";
@@ -23,6 +23,9 @@ const LEAST_ERROR = 1e-5;
 class PixelGlass {
   /** Column and row of the pixel under the glass; null if the glass is hidden. */
   private pixel: Point | null = null;
+  /** Whether the glass opens as soon as there is a picture: a layer was shown whose place it has
+   * taken. */
+  private isWanted = false;
   private data: { glass: Glass; samples: Samples } | null = null;
   private readonly section = byId("glass");
   private readonly method = byId<HTMLSelectElement>("glass-method");
@@ -35,6 +38,10 @@ class PixelGlass {
     this.count.value = "16";
     for (const choice of [this.method, this.count])
       choice.addEventListener("change", () => this.changed());
+    const layers = (remembered("layers") ?? "").split(" ");
+    const kept = layers.filter(it => it !== "samples" && it !== "grid");
+    this.isWanted = kept.length < layers.length;
+    if (this.isWanted) remember("layers", kept.join(" "));
     byId("glass-pin").addEventListener("click", () => this.pin());
     byId("glass-hide").addEventListener("click", () => this.show(null));
     byId("glass-next").addEventListener("click", () => step(this.method, 1));
@@ -62,7 +69,12 @@ class PixelGlass {
   }
 
   /** Asks anew about the pixel, because the text or what is chosen has changed. */
-  changed(): void { if (this.pixel !== null) void this.refresh(); }
+  changed(): void {
+    if (this.isWanted && !picture.isEmpty) {
+      this.isWanted = false;
+      this.pin();
+    } else if (this.pixel !== null) void this.refresh();
+  }
 
   private readonly refresh = newestOf<void>(async () => {
     const { pixel } = this;
@@ -107,8 +119,9 @@ class PixelGlass {
     byId("glass-table").replaceChildren(...rows,
       row(samples.color, "mean of the samples", samples.color, ""),
       row(color, "exact mean", "", color));
-    const least = bound === 0 ? "" : `, which is exact to ${bound.toExponential(0)}`;
-    setText(byId("glass-error"), `The mean is off by ${off.toPrecision(2)} of 1 in linear light${least}.`);
+    const least = bound === 0 ? "" : `; the exact mean, by at most ${bound.toExponential(0)}`;
+    setText(byId("glass-error"),
+      `The mean of the samples is off by ${off.toPrecision(2)} of 1 in linear light${least}.`);
   }
 }
 

@@ -236,7 +236,7 @@ test("the first problem is shown with its fix above the sliders, and the list ho
 test("vanishing points outside the page are arrows, and an empty layer gives a reason", async t => {
   const page = await open(await launch(t), await host(t));
   await page.click("summary:text('Show')");
-  for (const name of ["vanishing", "grid"]) await page.check(`input[name=${name}]`);
+  for (const name of ["vanishing", "axis"]) await page.check(`input[name=${name}]`);
   await page.keyboard.press("Escape");
   await page.waitForFunction(() => document.querySelectorAll("text.mark").length === 3);
   const marks = await page.locator("text.mark").evaluateAll(all => all.map(it => [it.textContent, it.getBoundingClientRect().toJSON()]));
