@@ -118,8 +118,8 @@ impl PartFile {
         file.rewind()?;
         let place = film::read_exr_place(BufReader::new(file))
             .map_err(|_| io::Error::other("it is neither a PNG nor an EXR file of a part"))?;
-        // A file that shows the whole picture is accepted, too: it is the only shard of one
-        // (`--shard 1/1`). Without a digest, however, the file is not from Pinhole.
+        // A file that shows the whole picture is accepted, too: `--shard 1/1` writes such a file.
+        // Without a digest, however, the file is not from Pinhole.
         let Some(digest) = place.digest else {
             let message = "it is no part of a picture that Pinhole rendered";
             return Err(io::Error::other(message));
@@ -242,7 +242,8 @@ fn gap(parts: &[PartFile], whole: Area) -> Option<Area> {
     })
 }
 
-/// Opens the rows of a file, which has the given width in pixels.
+/// Function that opens a file to read its rows. Its second argument is the width of the file's
+/// picture in pixels.
 type OpenRows<P> = fn(BufReader<File>, u32) -> io::Result<FileRows<P>>;
 
 /// The rows of the whole picture, read from the files of its parts. A part's file is open only

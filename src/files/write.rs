@@ -27,7 +27,7 @@ impl<T: Write + Seek> Sink for T {}
 #[derive(Clone, Copy, Debug)]
 pub enum Purpose<'a> {
     /// The user named the file. An existing file is replaced, and links are followed. A pipe or a
-    /// device is also allowed; the content is written to it when it is complete.
+    /// device is also allowed; nothing is written to it until the content is complete.
     Named,
     /// Pinhole chose the name of a file in this folder. An existing file is replaced. Links are
     /// followed, unless they lead out of the folder.
@@ -46,8 +46,8 @@ pub enum Purpose<'a> {
     Private(&'a Path),
     /// The file must be new. If a file exists already, it stays unchanged, and writing fails.
     New,
-    /// The file was read, and its content is changed. It is replaced only if no other program has
-    /// changed it since. Links are followed.
+    /// The program changes a file that it has read. The file is replaced only if no other program
+    /// has changed it since. Links are followed.
     Change(&'a Original),
 }
 

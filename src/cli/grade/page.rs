@@ -136,8 +136,8 @@ fn headings(total: Option<f64>) -> String {
         format!("<th scope=\"col\" aria-sort=\"none\"><button type=\"button\">{name}</button></th>")
     };
     let all: Vec<String> = sorted.map(heading).collect();
-    // On the page, the column of pictures comes right after the column of students, so its heading
-    // is inserted after the first one.
+    // On the page, the column of pictures comes right after the column of students, so the heading
+    // `picture` is inserted after the first heading.
     format!(
         "{}<th scope=\"col\">picture</th>{}",
         all[0],

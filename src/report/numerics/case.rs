@@ -70,7 +70,7 @@ pub(super) struct CaseScene {
     bits: usize,
     /// Generator of random points of the picture. By default, all points are equally likely.
     points: Box<dyn Fn(&mut CaseRng) -> SamplePoint>,
-    /// Share of the tests whose points come from the generator `points`, in halves: 0, 1 or 2. The
+    /// Number of halves of the tests (0, 1 or 2) that use points from the generator `points`. The
     /// other tests use points close to boundaries between colours.
     halves: u64,
 }
