@@ -118,7 +118,7 @@ const sliderField = StateField.define<number | null>({
     const { changes, docChanged, effects, selection } = transaction;
     const next = effects.findLast(it => it.is(openSlider));
     if (next !== undefined) return next.value;
-    // Typing closes the slider. Changes by the slider itself do not.
+    // Typing or moving the cursor closes the slider. Changes by the slider itself do not.
     const isTyped = docChanged && transaction.isUserEvent("input");
     return open === null || isTyped || selection !== undefined ? null : changes.mapPos(open, -1);
   },
