@@ -212,7 +212,7 @@ fn rounded(x: &Big) -> f64 {
     x.to_finite() + 0.0
 }
 
-/// Totals of the objects after the first [`LISTED`]. The readable output does not list these
+/// Numbers about the objects after the first [`LISTED`]. The readable output does not list these
 /// objects one by one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Rest {
