@@ -24,9 +24,9 @@ use crate::{
     numbers::{grouped, short, significant},
 };
 
-/// Compares the files of the arguments A and B. If there is a verdict and neither `--strict` nor
-/// `--tolerance` is given, the status is [`Status::Done`] if the verdict is that A is right.
-/// Otherwise, it is [`Status::Done`] if all differences are within the tolerance.
+/// Compares the files of the arguments A and B. If A is a picture and B a scene, the verdict on A
+/// decides the exit status, unless `--strict` or `--tolerance` is given. Otherwise, the status is
+/// [`Status::Done`] if all differences are within the tolerance.
 pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     if is_standard(&args.a) && is_standard(&args.b) {
         let message = "standard input can be read once only, and `-` is given twice";
@@ -219,7 +219,7 @@ struct DiffReport {
     comparison: Result<Comparison, SizesDiffer>,
     tolerance: f64,
     /// Verdict on picture A: whether it is right and, if not, which mistakes explain the
-    /// differences. `None` if B is not a scene.
+    /// differences. `None` unless A is a picture and B a scene.
     verdict: Option<Verdict>,
     /// Whether the tolerance decides the exit status, not the verdict. It is `true` if there is no
     /// verdict.
@@ -384,8 +384,8 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
 }
 
 /// Lists the scene's objects, and says which of them are drawn right. If the scene has more than 12
-/// objects, lists at most 12 of the wrong ones, and gives only the numbers of further wrong objects
-/// and of right objects.
+/// objects, names at most 12 wrong ones. Further wrong objects and all right ones are then only
+/// counted.
 fn objects(verdict: &Verdict) -> String {
     /// Maximum number of objects that are listed. If the scene has more, objects that are right are
     /// only counted. Chosen so that the list takes a few lines; any similar number works.

@@ -49,7 +49,8 @@ enum Headings {
 }
 
 impl Headings {
-    /// Returns bold headings if the terminal shows colours, because it then shows bold text, too.
+    /// Returns bold headings if the terminal shows colours, since such a terminal also shows bold
+    /// text.
     fn of(style: Style) -> Self {
         if style.color { Self::Bold } else { Self::Plain }
     }

@@ -70,8 +70,8 @@ impl<'t> LineCursor<'t> {
         self.solid_before += line.chars().filter(|c| !c.is_whitespace()).count();
     }
 
-    /// Returns whether the next lines of both texts are equal and at corresponding places, or both
-    /// texts are at their ends.
+    /// Returns whether the next lines of both texts are equal, with the same number of characters
+    /// before them, not counting white space. Also returns `true` if both texts are at their ends.
     fn is_same(&self, other: &Self) -> bool {
         match (self.line(), other.line()) {
             (None, None) => true,

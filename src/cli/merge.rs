@@ -22,10 +22,10 @@ use crate::{
 };
 
 /// Number of rows that are combined at a time. With more rows, a wide picture would need more
-/// memory; with fewer, the bands would be allocated and written more often.
+/// memory; with fewer, memory would be allocated, and rows would be written, more often.
 const ROWS: u32 = 64;
 
-/// The file of a part.
+/// A file that contains a part of the picture.
 struct PartFile {
     path: PathBuf,
     format: FileFormat,
@@ -252,9 +252,9 @@ struct MergedRows<'a, P> {
     parts: &'a [PartFile],
     whole: Area,
     open_rows: OpenRows<P>,
-    /// Index of the first part that was not opened yet.
+    /// Index of the first part whose file has not been opened yet.
     next: usize,
-    /// Parts with rows that were not read yet.
+    /// Open files of parts, of which some rows have not been read yet.
     open: Vec<(&'a PartFile, FileRows<P>)>,
     /// Index of the next row.
     y: u32,

@@ -121,9 +121,9 @@ pub fn wrapped(text: &str, width: usize) -> String {
     broken.collect::<Vec<_>>().join("\n")
 }
 
-/// Returns the offset of the last column of a table's row that starts at most `most` characters
-/// from the start of the row. Columns are separated by at least two spaces. Without such a column,
-/// returns 2, or `most` if `most` is less than 2.
+/// Returns where the last column of a table's row starts, as a number of characters. Only columns
+/// that start at `most` or before it are considered. Columns are separated by at least two spaces.
+/// Without such a column, returns 2, or `most` if `most` is less than 2.
 fn last_column(line: &str, most: usize) -> usize {
     let letters: Vec<char> = line.chars().take(most + 1).collect();
     let starts = letters.windows(3).enumerate();

@@ -75,9 +75,10 @@ pub struct Certificate {
     pixels: u64,
     /// Number of pixels whose rounded values are proven right.
     certain: u64,
-    /// Number of pixels whose bound exceeds [`VAGUE`].
+    /// Number of pixels whose error bound exceeds [`VAGUE`].
     vague: u64,
-    /// Greatest bound of a pixel's mean, with the pixel's column and row in the whole picture.
+    /// Greatest error bound of a pixel's mean, in linear light, with the pixel's column and row in
+    /// the whole picture.
     worst: Option<(f32, [u32; 2])>,
 }
 

@@ -57,8 +57,8 @@ impl Screen {
                 "`--show` draws in colours, and the terminal has none, by `TERM`, `NO_COLOR` or `CLICOLOR`",
             ));
         }
-        // The picture is drawn from the top of the screen. What was there is scrolled up first, so
-        // that the user can still scroll back to it.
+        // The picture is drawn from the top of the screen. The earlier content of the screen is
+        // scrolled up first, so that the user can still scroll back to it.
         output::to_people(&format!("{}\x1b[H", "\n".repeat(size().1)));
         Ok(Self {
             shown: Some(ShownPicture::default()),
@@ -112,8 +112,8 @@ impl Screen {
 
     fn refresh(&self) {
         if let Some(ShownPicture { drawn, .. }) = &self.shown {
-            // The picture is drawn over the old one without clearing the screen, which would
-            // flicker.
+            // The picture is drawn over the old one. If the screen were cleared first, the picture
+            // would flicker.
             output::to_people(&format!("\x1b[H{drawn}\x1b[J{}", self.messages));
         }
     }

@@ -149,7 +149,7 @@ impl<'s> Excerpt<'s> {
         if shown.last().is_some_and(|(end, _)| *end < range.end) {
             self.text.push('…');
         }
-        // A label at the end of the line is drawn under this space.
+        // Each line ends with a space, under which a label at the end of the line is drawn.
         self.text.push(' ');
         self.lines.push(ExcerptLine {
             number,
@@ -193,7 +193,8 @@ impl SourceCode for Excerpt<'_> {
         ) else {
             return Err(MietteError::OutOfBounds);
         };
-        // An error for lines that are not consecutive makes miette draw them in separate frames.
+        // If this function returns an error, miette draws the labels in separate frames. Therefore,
+        // it fails for lines that are not consecutive.
         if last.number - first.number != last_index - first_index {
             return Err(MietteError::OutOfBounds);
         }

@@ -36,7 +36,7 @@ pub enum Purpose<'a> {
     /// file existed then, it is replaced only if it has not changed since. If it did not exist
     /// then, writing fails if it exists now.
     Again {
-        /// The folder that a link must not lead out of.
+        /// The folder in which the file must lie after links are followed.
         within: &'a Path,
         /// The file as it was read before, or the record that it did not exist.
         original: &'a Original,
@@ -52,7 +52,8 @@ pub enum Purpose<'a> {
 }
 
 impl<'a> Purpose<'a> {
-    /// Returns the folder that links must not lead out of, or `None` if they may lead anywhere.
+    /// Returns the folder in which the file must lie after links are followed, or `None` if it may
+    /// lie anywhere.
     fn outer(self) -> Option<&'a Path> {
         match self {
             Self::Within(outer) | Self::Private(outer) | Self::Again { within: outer, .. } => {

@@ -62,8 +62,9 @@ pub struct BlockEntry<'s> {
     pub entries: Vec<Entry<'s>>,
     /// Whether the block is laid out on one line.
     pub on_one_line: bool,
-    /// Whether the block was written on one line and is at most a fifth wider than allowed. If so,
-    /// it stays on one line as part of a table.
+    /// Whether the block was written on one line and is at most a fifth wider than allowed. Such a
+    /// block stays on one line if it is part of a table, i.e. if at least three such blocks of one
+    /// kind follow each other.
     pub is_nearly_one_line: bool,
 }
 

@@ -116,9 +116,9 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
         ..
     } = scene::analyze(&sources);
     let of_syntax = diagnostics.iter().filter(|it| it.is_of_syntax);
-    // A field of an unknown name may have no value, which prevents formatting. `check` then reports
-    // only that the name is unknown, and so for unknown kinds. Therefore, these reports are
-    // returned if there are no others.
+    // A missing value prevents formatting. If its field or kind is unknown, however, `check`
+    // reports only the unknown name. If there are no other mistakes, these reports are returned, so
+    // that the user learns why the text is not formatted.
     let codes = ["pinhole::unknown_field", "pinhole::unknown_kind"];
     let is_unknown = |it: &&Diagnostic| codes.contains(&it.code.as_str());
     let unknown = diagnostics.iter().filter(is_unknown);

@@ -16,8 +16,9 @@ use zip::{DateTime, ZipArchive, result::ZipError};
 use crate::{files, lock::lock};
 
 /// Maximum length, in bytes, of a file that is unpacked from a zip file or compared with the files
-/// of other students. A longer file is an error. Without `--large`, pictures of more than 256 MiB
-/// are rejected, too, so this limit rejects no other pictures.
+/// of other students. A longer file is an error. The value is the maximum length of a picture
+/// without `--large`, so a smaller limit would reject pictures that are accepted outside of zip
+/// files.
 pub const FILE_LIMIT: u64 = 256 << 20;
 
 /// Maximum number of entries of a zip file. A zip file with more is rejected. Chosen without

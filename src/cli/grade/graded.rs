@@ -78,8 +78,8 @@ impl JudgedPicture {
 
 impl ComparedPicture {
     /// Returns the sort key of a picture. The student's picture with the smallest key is graded.
-    /// The verdicts are ordered from right to unknown, and an unreadable picture comes last. Among
-    /// pictures with the same verdict, the one with the smallest error comes first.
+    /// The order of verdicts is right, noise, wrong, unknown; an unreadable picture comes last.
+    /// Among pictures with the same verdict, the one with the smallest error comes first.
     pub fn rank(&self) -> (u8, f64) {
         let Ok(judged) = &self.result else {
             return (4, 0.0);

@@ -17,9 +17,9 @@ use crate::{
 /// Returns the content of `results.json` for a student. Each criterion, such as the camera or an
 /// object, is a test in Gradescope.
 ///
-/// Without `--points`, each test is worth one point. With `--points`, the score belongs to the
-/// whole submission, and the tests only pass or fail. Otherwise, a mistake could cost more points
-/// than its test is worth, and the points of the tests would not add up to the score.
+/// Without `--points`, each test is worth one point. With `--points`, only the whole submission has
+/// a score, and the tests pass or fail without points. If the tests had points, a mistake could
+/// cost more points than its test is worth, and the points would not add up to the score.
 ///
 /// If the picture is wrong for unknown reasons, no scores are written, so that the teacher decides.
 pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>) -> Value {

@@ -18,8 +18,9 @@ const SCRIPT: &str = include_str!("page.js");
 /// Path of the scene's exact picture, relative to the HTML page.
 pub const EXACT: &str = "pictures/exact.png";
 
-/// Returns the paths of three pictures of the student with this index: the submitted one, the heat
-/// map of its differences, and the exact picture of the same part of the scene.
+/// Returns the paths of three pictures of the student with this index: the submitted picture, the
+/// heat map that shows how it differs from the exact picture, and the exact picture of the same
+/// part of the scene.
 pub fn names(index: usize) -> [String; 3] {
     ["", "-difference", "-exact"].map(|what| format!("pictures/{}{what}.png", index + 1))
 }

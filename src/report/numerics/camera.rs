@@ -77,9 +77,9 @@ fn lengths(random: &mut CaseRng) -> Camera {
 ///
 /// If d is tiny, the slope of some rays towards the checkerboard is about d. A ray is treated as
 /// parallel to the board if its slope is below a threshold: about 2^−90 in the language's rules,
-/// 2^−310 in the tracer, and 2^−1071 in the oracle (the reference, with 3000 bits). For d between
-/// 2^−310 and 2^−90, the tracer does not follow the language's rules, so such distances are not
-/// tested.
+/// 2^−310 in the tracer, and 2^−1071 in the oracle (the reference, with 3000 bits). If d is between
+/// 2^−310 and 2^−90, such rays are parallel to the board by the language's rules, but not in the
+/// tracer. Such distances are therefore not tested.
 fn lenses(random: &mut CaseRng) -> CaseScene {
     let lowest = random.pick(&[9.0, 155.0]);
     let d = random.power(lowest, lowest * 1.95);

@@ -10,7 +10,8 @@ use crate::{
     scene::{Camera, Scene, Shape},
 };
 
-/// A hard case of the arithmetic. [`cases`](super::cases) returns all cases.
+/// A hard case: a kind of scene in which rounding errors easily cause wrong answers.
+/// [`cases`](super::cases) returns all cases.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
     /// Short name of the case in tables, such as `C3a`.

@@ -1,5 +1,5 @@
-//! Compares what is seen at points of a picture by the oracle (a reference tracer of at least 512
-//! bits), by textbook formulas, and by Pinhole.
+//! Compares what the oracle (a reference tracer of at least 512 bits), textbook formulas and
+//! Pinhole see at points of a picture.
 
 use dashu_float::ops::Abs;
 use glam::{DVec2, DVec3, dvec2};
@@ -146,9 +146,9 @@ impl Trial {
     }
 
     /// Measures the errors of the distance and of the coordinates of what is seen at `pixels`, in
-    /// units in the last place (ulp). Records the larger of the two in `tally`, for the textbook
-    /// formulas and for Pinhole. The ulp of a coordinate's error is that of the point's largest
-    /// coordinate.
+    /// units in the last place (ulp). For the coordinates, this is the last place of the point's
+    /// largest coordinate. Records the larger of the two errors in `tally`, for the textbook
+    /// formulas and for Pinhole.
     fn measure(&self, pixels: DVec2, tally: &mut CaseTally) {
         let r = self.oracle.direction_through(pixels, DVec2::ZERO);
         let Some(seen) = self.oracle.seen(&r) else {

@@ -203,8 +203,8 @@ fn time_at(steps: &[Measured], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     let slope = |a: &(f64, f64), b: &(f64, f64)| (b.1 - a.1) / (b.0 - a.0);
     match times.windows(2).find(around) {
         Some([a, b]) => a.1 + slope(a, b) * (per_pixel - a.0),
-        // Measured times may fall by chance, but more samples never take less time. So a negative
-        // slope is replaced by 0.
+        // Measured times may fall by chance although the number of samples grows. In fact, more
+        // samples never need less time, so a negative slope is replaced by 0.
         _ => last.1 + slope(first, last).max(0.0) * (per_pixel - last.0),
     }
 }

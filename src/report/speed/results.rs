@@ -1,5 +1,5 @@
-//! The request for a measurement, and its results. Slopes, typical values and numbers of samples
-//! are computed from the results.
+//! The request for a measurement, and its results. From the results, this module also computes
+//! slopes, typical values of several runs, and the samples that can be rendered in a given time.
 
 use std::time::Duration;
 
@@ -138,7 +138,7 @@ pub fn end<T>(points: &[T]) -> &[T] {
 }
 
 /// Minimum ratio of the largest to the smallest number of samples to which a slope is fitted. Over
-/// a smaller range, the slope would depend more on noise than on the method. It would also depend
+/// a smaller range, the slope could depend more on noise than on the method. It could also depend
 /// on how a method divides a pixel into a grid: for 17 samples, for example, the grid is a single
 /// row.
 pub const LEAST_SPAN: f64 = 4.0;

@@ -117,7 +117,7 @@ function answer(draft: Draft, isRestored: boolean): void {
     restored = draft;
     // Before the host has sent its state, it is not known whether the host has stored this draft,
     // too. Therefore, the page stores its later drafts under this draft's key, so that they replace
-    // a copy of the host.
+    // the host's copy, if there is one.
     if (!files.isTold) id = draft.id;
     files.restore(draft.text, draft.base, draft.name);
   }

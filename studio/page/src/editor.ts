@@ -116,8 +116,7 @@ class SceneEditor {
       parent,
       extensions: [
         nonce === undefined ? [] : EditorView.cspNonce.of(nonce),
-        // The editor cannot be edited before the scene has arrived, because the scene replaces its
-        // text.
+        // The text cannot be edited before the scene has arrived, because the scene replaces it.
         EditorState.readOnly.of(true),
         wholeCharacters,
         lineNumbers(), lintGutter(), highlightActiveLine(), highlightActiveLineGutter(),

@@ -234,8 +234,8 @@ class Files {
     try {
       const answer = await connection.request<Saved>("studio/save", about);
       if (answer.ok) this.saved(scene, name, text);
-      // If the page shows another scene by now, the user cannot choose between the two texts, so
-      // the save fails.
+      // The file was changed by another program. If the page shows another scene by now, the user
+      // cannot choose between the page's and the file's text, so the save fails.
       else if (this.at !== scene) throw new Refusal(0, `${name} is not saved: it was changed.`);
       else if (answer.text === null) this.changed(null);
       else this.ask(answer.text);

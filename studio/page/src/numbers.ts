@@ -201,7 +201,7 @@ export const numberControls: Extension = [
       const at = view.posAtCoords({ x: event.clientX, y: event.clientY });
       return scrub(event, at === null ? null : literalAt(at));
     },
-    // While the Alt key is held, a press must not begin a selection.
+    // While the Alt key is held, a drag changes a number, so a press must not begin a selection.
     mousedown: event => event.altKey,
     click({ altKey }, { state }) {
       const literal = state.selection.main.empty && !altKey ? atCursor() : null;
