@@ -146,8 +146,9 @@ fn tiny(count: u32) -> String {
 }
 
 /// Returns a scene of `count` overlapping triangles with all orientations. Each is two hundred
-/// times as long as it is wide. Even a small part of the picture is crossed by many of them, so
-/// culling saves little work; it may take up to three times as long as tracing each sample alone.
+/// times as long as it is wide. Many of them cross even a small part of the picture, so culling
+/// saves little work: rendering with culling may be three times as slow as tracing each sample
+/// alone.
 fn slivers(count: u32) -> String {
     let mut text = String::from("camera { eye (0, 0, 9) lookat (0, 0, 0) }\n");
     for i in 0..count {

@@ -90,9 +90,9 @@ fn main() {
 }
 
 /// Returns sets of `count` mistakes that a renderer may make. For a `count` of 0, returns only the
-/// empty set; for 1, a set for each mistake. For 2, pairs each mistake of an object with one
-/// mistake each of the camera, the board, another object and the picture. For 3, combines each
-/// mistake of an object with one of the camera and one of another object.
+/// empty set; for 1, a set for each mistake. For 2, returns four pairs for each mistake of an
+/// object: with a mistake of the camera, of the board, of another object, and of the picture. For
+/// 3, combines each mistake of an object with one of the camera and one of another object.
 fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     let objects = OF_THE_OBJECTS.iter().enumerate();
     let sets = objects.flat_map(|(index, object)| {
@@ -156,8 +156,8 @@ fn cases(
     sets.filter_map(|(scene, set)| seen(scene, set)).collect()
 }
 
-/// Runs `diff` on the pictures of `cases`, and prints a row of the table: how many answers name
-/// exactly the right mistakes.
+/// Runs `diff` on the pictures of `cases`. Prints how many answers name exactly the right mistakes,
+/// as a row of a Markdown table.
 fn judge(program: &str, of: &str, cases: &[Case]) {
     let folder = tempfile::tempdir().expect("a folder for pictures");
     let (mut right, mut time) = (0, Duration::ZERO);

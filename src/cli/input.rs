@@ -40,8 +40,8 @@ const START: u64 = 1 << 16;
 
 /// A scene that was read, but not yet parsed.
 pub struct SceneInput {
-    /// The scene's text and its overrides, i.e. `--set` arguments: first those that are stored in a
-    /// picture, then those on the command line.
+    /// The scene's text and its overrides (`--set` arguments). Overrides that are stored in a
+    /// picture come before those on the command line.
     pub sources: Sources,
     /// Whether the scene was read from a PNG in which Pinhole stored it.
     pub is_picture: bool,
@@ -133,8 +133,9 @@ impl SceneInput {
     }
 
     fn add(&mut self, overrides: &Overrides) {
-        // Overrides are numbered as on the command line. Overrides that are stored in a picture
-        // have no number there, so they are skipped.
+        // The number in a source's name is the position of the `--set` argument on the command
+        // line. Overrides that are stored in a picture are in the list already, and are not
+        // included in the count.
         let sets = (1..).zip(&overrides.sets);
         let sets = sets.map(|(number, set)| Source::from_text(format!("--set #{number}"), set));
         self.sources.sets.extend(sets);

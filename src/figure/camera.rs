@@ -224,10 +224,10 @@ fn objects_within(scene: &Scene, reach: f64, first: Option<usize>) -> Vec<Body> 
     bodies.filter(is_small).take(MOST_OBJECTS).collect()
 }
 
-/// Returns lines between the squares of the checkerboards, within the area of the figure's points,
-/// `points`. If there are many lines, only about [`MOST_LINES`] in each direction are returned.
-/// Adds the corners of each board's drawn area to `points`. Boards much higher or lower than the
-/// eye, or with very large squares, are left out.
+/// Returns lines between the squares of the checkerboards, within the bounding box of `points`, the
+/// points of the figure. If there are many lines, only about [`MOST_LINES`] in each direction are
+/// returned. Adds the corners of each board's drawn area to `points`. Boards much higher or lower
+/// than the eye, or with very large squares, are left out.
 fn boards(scene: &Scene, points: &mut Vec<DVec3>, reach: f64) -> Vec<[DVec3; 2]> {
     let mut lines = Vec::new();
     let (min, max) = bounds3(points);

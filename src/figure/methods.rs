@@ -111,9 +111,9 @@ fn kept(method: Method, n: u64) -> String {
 }
 
 /// Draws the cells of a pixel, for a method that places one of the `n` samples in each cell. The
-/// pixel is a square with the top left corner `corner` and the side `side`. If the method divides
-/// the pixel in several ways at once ([`Tiling`]s), the lines of the first way are stronger, unless
-/// its cells are whole rows or columns.
+/// pixel is a square with the top left corner `corner` and the side `side`. A method may divide the
+/// pixel in several ways at once ([`Tiling`]s), for example into cells, rows and columns. The lines
+/// of the first tiling are stronger if it consists of neither whole rows nor whole columns.
 pub fn strata(canvas: &mut Canvas, method: Method, n: u64, corner: DVec2, side: f64) {
     let at = |x: f64, y: f64| corner + DVec2::new(x, y) * side;
     let tilings = if n > 0 { tilings(method, n) } else { vec![] };
@@ -144,7 +144,8 @@ pub fn marked(
             .rows
             .first()
             .map_or(0.0, |cells| *cells as f64 / n as f64);
-        // Three places apart from each other: at the top left, at the right, and at the bottom.
+        // Column, row and cell are tinted at places apart from each other: at the right, at the
+        // bottom, and at the top left.
         let (stratum, from, to) = match (tiling.is_columns(), tiling.is_rows()) {
             (true, _) => {
                 let stratum = ("blue", "a column");
@@ -159,8 +160,8 @@ pub fn marked(
                 (("red", "a cell"), DVec2::ZERO, DVec2::new(width, height))
             }
         };
-        // If several grids have cells, only a cell of the first grid is tinted. Its cells are the
-        // most nearly square ones.
+        // If several tilings consist of cells, only a cell of the first one is tinted, since its
+        // cells are the most nearly square.
         if marked.contains(&stratum) {
             continue;
         }

@@ -1,7 +1,6 @@
-//! Draws figures of scenes for teaching material.
+//! Draws figures of scenes for teaching material, as SVG files that are the same on every machine.
 //!
-//! In: a scene, and the kind of figure. Out: the text of an SVG file, the same on every machine. A
-//! figure shows one idea with few marks, and each mark has its label beside it. The figures use
+//! A figure shows one idea with few marks, and each mark has its label beside it. The figures use
 //! results of other modules: samples come from [`sampling`](crate::sampling), visible objects from
 //! the tracer, outlines from the editor, and axes and angles from [`inspect`](crate::inspect).
 //!

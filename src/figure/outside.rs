@@ -1,9 +1,8 @@
-//! Shows a scene from outside, i.e. not from its camera. The view fits given points into a
-//! rectangle of the drawing.
+//! Shows a scene from outside, i.e. not from its camera.
 //!
-//! In: points in space, and the side from which they are seen. Out: their positions in the drawing.
-//! The observer is a camera as in the scene language, so that [`Projection`] and the editor's
-//! outlines can be used.
+//! The view maps given points in space into a rectangle of the drawing, which they fill as far as
+//! possible. The observer is a camera as in the scene language, so that [`Projection`] and the
+//! editor's outlines can be used.
 
 use std::sync::Arc;
 

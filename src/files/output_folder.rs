@@ -117,9 +117,9 @@ impl OutputFolder {
         for (name, _) in files {
             self.check(name)?;
         }
-        // The new hashes are added to the list before any file is written. If this process is
-        // killed while it writes, the list contains the hash of each file's old content and of its
-        // new content.
+        // The new hashes are added to the list before any file is written, and the old ones are
+        // kept. If this process is killed while it writes, each file still has a hash from the
+        // list, whether it was written already or not, so it is not taken for the user's.
         for (name, text) in files {
             let hashes = self.hashes.entry(name.clone()).or_default();
             let hash = hash(text.as_ref());

@@ -27,7 +27,7 @@ impl<T: Write + Seek> Sink for T {}
 #[derive(Clone, Copy, Debug)]
 pub enum Purpose<'a> {
     /// The user named the file. An existing file is replaced, and links are followed. A pipe or a
-    /// device is also allowed; the content is written to it when it is complete.
+    /// device is also allowed; nothing is written to it until the content is complete.
     Named,
     /// Pinhole chose the name of a file in this folder. An existing file is replaced. Links are
     /// followed, unless they lead out of the folder.
@@ -36,7 +36,7 @@ pub enum Purpose<'a> {
     /// file existed then, it is replaced only if it has not changed since. If it did not exist
     /// then, writing fails if it exists now.
     Again {
-        /// The folder that a link must not lead out of.
+        /// The folder in which the file must lie after links are followed.
         within: &'a Path,
         /// The file as it was read before, or the record that it did not exist.
         original: &'a Original,
@@ -46,13 +46,14 @@ pub enum Purpose<'a> {
     Private(&'a Path),
     /// The file must be new. If a file exists already, it stays unchanged, and writing fails.
     New,
-    /// The file was read, and its content is changed. It is replaced only if no other program has
-    /// changed it since. Links are followed.
+    /// The program changes a file that it has read. The file is replaced only if no other program
+    /// has changed it since. Links are followed.
     Change(&'a Original),
 }
 
 impl<'a> Purpose<'a> {
-    /// Returns the folder that links must not lead out of, or `None` if they may lead anywhere.
+    /// Returns the folder in which the file must lie after links are followed, or `None` if it may
+    /// lie anywhere.
     fn outer(self) -> Option<&'a Path> {
         match self {
             Self::Within(outer) | Self::Private(outer) | Self::Again { within: outer, .. } => {

@@ -62,7 +62,9 @@ pub struct BlockEntry<'s> {
     pub entries: Vec<Entry<'s>>,
     /// Whether the block is laid out on one line.
     pub on_one_line: bool,
-    /// Whether the block was written on one line and is at most a fifth wider than allowed.
+    /// Whether the block was written on one line and is at most a fifth wider than allowed. Such a
+    /// block stays on one line if it is part of a table, i.e. if at least three such blocks of one
+    /// kind follow each other.
     pub is_nearly_one_line: bool,
 }
 
@@ -74,7 +76,8 @@ impl BlockEntry<'_> {
 }
 
 impl Entry<'_> {
-    /// Returns the width of the entry, in characters, if its block is laid out on one line.
+    /// Returns the width that the entry has, in characters, on the line of a block that is laid out
+    /// on one line.
     pub fn width_in_line(&self) -> usize {
         let comments = self.leading.iter().chain(&self.trailing);
         let comments: usize = comments.map(|comment| comment.chars().count() + 1).sum();

@@ -12,8 +12,8 @@ use crate::{
     schema::UnknownMethod,
 };
 
-/// Why an operation on a scene or a picture failed. Errors of other modules, and those of reading
-/// and writing, are converted to it by `?`.
+/// Why an operation on a scene or a picture failed. Errors of other modules, and input and output
+/// errors, are converted to it by `?`.
 ///
 /// ```
 /// use pinhole::{Method, Scene, film::Film};

@@ -1,4 +1,4 @@
-//! Opens scenes from files: from the file of a text, or from a PNG that carries its scene.
+//! Opens scenes from files: from text files, or from PNG files that contain their scene.
 
 use std::{io, path::Path};
 
@@ -9,7 +9,7 @@ use crate::{
 };
 
 impl Scene {
-    /// Reads a scene from the file of its text, or from a PNG that carries it. Mistakes are
+    /// Reads a scene from a text file, or from a PNG file that contains the scene. Mistakes are
     /// reported with the file's path.
     ///
     /// ```

@@ -134,8 +134,9 @@ fn class(args: &GradeArgs) -> Result<Class, Trouble> {
     Ok(class)
 }
 
-/// Returns the names of all files that may be written into the output folder. They are checked
-/// before any picture is judged, so that no file of the user is replaced.
+/// Returns the names of all files that may be written into the output folder. Before any picture is
+/// judged, the folder is searched for the user's own files with these names, so that none is
+/// replaced.
 fn output_names(args: &GradeArgs, class: &Class) -> Vec<String> {
     let pictures = (0..class.students.len()).flat_map(page::names);
     let own = FILES.map(str::to_owned).into_iter().chain(pictures);

@@ -10,7 +10,8 @@ use crate::{
     scene::{Camera, Scene, Shape},
 };
 
-/// A hard case of the arithmetic. [`cases`](super::cases) returns all cases.
+/// A hard case: a kind of scene in which rounding errors easily cause wrong answers.
+/// [`cases`](super::cases) returns all cases.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
     /// Short name of the case in tables, such as `C3a`.
@@ -70,7 +71,7 @@ pub(super) struct CaseScene {
     bits: usize,
     /// Generator of random points of the picture. By default, all points are equally likely.
     points: Box<dyn Fn(&mut CaseRng) -> SamplePoint>,
-    /// Share of the tests whose points come from the generator `points`, in halves: 0, 1 or 2. The
+    /// Number of halves of the tests (0, 1 or 2) that use points from the generator `points`. The
     /// other tests use points close to boundaries between colours.
     halves: u64,
 }

@@ -19,9 +19,9 @@ pub type SamplePoint = [(u32, f64); 2];
 /// the last `f64` before the middle, and the middle itself.
 pub const MIDDLE: [(u32, f64); 2] = [(SIZE / 2 - 1, 0.5_f64.next_down()), (SIZE / 2, -0.5)];
 
-/// A generator of pseudorandom numbers. One thread tests each block of inputs of a case. The
-/// numbers depend only on the case and on the block's index, so the number of threads does not
-/// affect them.
+/// A generator of pseudorandom numbers. The inputs of a case are divided into blocks, each of which
+/// is tested by one thread. The numbers depend only on the case and on the block's index, so the
+/// number of threads does not affect them.
 #[derive(Clone, Debug)]
 pub struct CaseRng(CounterRng);
 

@@ -34,7 +34,8 @@ impl Estimate {
 /// The methods that reach an error, ranked by CPU time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranking {
-    /// The method with the least CPU time, and others whose times do not clearly differ from it.
+    /// The method with the least CPU time, and the methods whose CPU times do not clearly differ
+    /// from this time.
     pub fastest: Vec<(Method, Estimate)>,
     /// The other methods, sorted by CPU time.
     pub others: Vec<(Method, Estimate)>,
@@ -121,8 +122,8 @@ impl MethodSeries {
 
     fn estimate_by(&self, steps: &[Measured], error: f64) -> Option<Estimate> {
         let (&(first, _), &(last, last_run)) = (steps.first()?, steps.last()?);
-        // Index of the smallest number of samples that, like all larger ones, has a small enough
-        // error.
+        // Index of the smallest number of samples from which on all measured errors are small
+        // enough.
         let enough = steps.iter().rposition(|(_, run)| run.error > error);
         let enough = enough.map_or(0, |last| last + 1);
         let per_pixel = match steps.get(enough) {
@@ -202,8 +203,8 @@ fn time_at(steps: &[Measured], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     let slope = |a: &(f64, f64), b: &(f64, f64)| (b.1 - a.1) / (b.0 - a.0);
     match times.windows(2).find(around) {
         Some([a, b]) => a.1 + slope(a, b) * (per_pixel - a.0),
-        // Measured times may fall by chance, but more samples never take less time. So a negative
-        // slope is replaced by 0.
+        // Measured times may fall by chance although the number of samples grows. In fact, more
+        // samples never need less time, so a negative slope is replaced by 0.
         _ => last.1 + slope(first, last).max(0.0) * (per_pixel - last.0),
     }
 }
