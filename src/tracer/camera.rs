@@ -38,9 +38,10 @@ fn normalized(v: &Dyadic3) -> [Big; 3] {
     v.each_ref().map(|x| x.to_big().over(&length))
 }
 
-/// Returns a + b, or 0 if the absolute value of the sum does not exceed the errors of a and b, at
-/// most four roundings each. It is used to turn the camera's axes u and v by the roll. With a roll
-/// of 45 degrees, some components are sums of opposite numbers, and must become exactly 0.
+/// Returns a + b, or 0 if the absolute value of the sum does not exceed the errors of a and b. The
+/// error of each is at most four roundings. It is used to turn the camera's axes u and v by the
+/// roll. With a roll of 45 degrees, some components are sums of opposite numbers, and must become
+/// exactly 0.
 fn sum(a: &Big, b: &Big) -> Big {
     let sum = a.plus(b);
     let lost = (a.magnitude() + b.magnitude()) * (8.0 * Big::UNIT);
@@ -273,9 +274,9 @@ impl<T: Real> Camera<T> {
 
 /// Range of the binary exponent of the greatest length in a scene. If the exponent is outside of
 /// the range, all lengths are multiplied by a power of two. The squares of lengths from 2^−500 to
-/// 2^400 are well within the range of `f64`, 2^−1022 to 2^1024. The lower end of the range is −300
-/// rather than −500, so that the scene may also contain lengths that are 2^200 times shorter than
-/// the greatest.
+/// 2^400 are between 2^−1000 and 2^800, and so within the range of `f64`, 2^−1022 to 2^1024. The
+/// lower end of the range is −300 rather than −500, so that the scene may also contain lengths that
+/// are 2^200 times shorter than the greatest.
 const LENGTHS: std::ops::RangeInclusive<i32> = -300..=400;
 
 /// Returns the binary logarithm of the factor by which all lengths of a scene are multiplied. The

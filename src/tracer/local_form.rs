@@ -18,9 +18,9 @@ use crate::{
 };
 
 /// Upper bound of the rounding error of a [`LocalForm`]'s value, divided by the sum of the absolute
-/// values of the form's factors. The value is four roundings: one for each factor, one for the
-/// factor's division by the error bound ([`LocalForm::line`]), and two for the products and sums of
-/// the evaluation. Two are enough for these, because offsets are at most ½, so a product is at most
+/// values of the form's factors. The value is four roundings: one for a factor itself, one for its
+/// division by the error bound ([`LocalForm::line`]), and two for the products and sums of the
+/// evaluation. Two are enough for these, because offsets are at most ½, so a product is at most
 /// half of its factor.
 const LINEAR_ROUNDING: f64 = 4.0 * f64::UNIT;
 /// Upper bound of the rounding error of a [`LocalQuadratic`]'s value, divided by the sum of the

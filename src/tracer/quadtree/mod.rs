@@ -54,9 +54,10 @@ impl Quadtree {
     }
 
     /// Returns the objects that rays through the rectangle `patch` of the view plane may hit, in
-    /// file order. `behind` is called with an object that fills the rectangle. It returns a rounded
-    /// inverse depth that the object has at least in the whole rectangle; objects entirely behind
-    /// this depth are left out. Returns `None` if certainly more than `most` objects are found.
+    /// file order. `behind` is called with an object that fills the rectangle, and returns the
+    /// rounded minimum of the object's inverse depth over the rectangle. Objects entirely behind
+    /// this depth are left out. Returns `None` if more than four times `most` list entries are
+    /// found. An object has at most four entries, so there are then more than `most` objects.
     pub fn within(
         &self,
         patch: &Patch,
@@ -70,7 +71,8 @@ impl Quadtree {
     }
 
     /// Returns the objects that rays through the rectangle `patch` of the view plane may hit, the
-    /// nearest first. Returns `None` if certainly more than [`OBJECTS_A_CELL`] objects are found.
+    /// nearest first. Returns `None` if [`within`](Self::within) finds more than [`OBJECTS_A_CELL`]
+    /// objects.
     pub fn nearby(&self, patch: &Patch) -> Option<Vec<BoundedObject>> {
         let mut items = self.within(patch, OBJECTS_A_CELL, |_| Nearness::NONE)?;
         items.sort_by_key(|item| Reverse(item.nearest));
