@@ -61,8 +61,8 @@ fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> B
             return normal;
         }
     }
-    // Vertices may be so far away that the first hundreds of bits of their directions from the eye
-    // are equal. The normal is then computed exactly.
+    // If vertices are very far away, their directions from the eye may agree in hundreds of binary
+    // digits. The normal is then computed exactly.
     let [a, b] = [a, b].map(|corner| Dyadic::between(camera.eye, corner));
     let normal = Dyadic::cross(&a, &b).map(|x| Ball::<Big>::from_big(&x.to_big()));
     camera.turned(&scaled_to_one(&normal).map(|x| Ball::from_big(&x.mid)))

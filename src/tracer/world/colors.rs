@@ -43,8 +43,8 @@ impl Colors {
         }
     }
 
-    /// Gives each object in `owners` a palette entry of its own, with an arbitrary colour. Pieces
-    /// of one owner, such as the faces of a box, share an entry.
+    /// Gives each owner a palette entry of its own, with an arbitrary colour. `owners` contains the
+    /// index of each object's owner. The faces of a box have the same owner, the box.
     pub(super) fn by_object(owners: impl Iterator<Item = usize>) -> Self {
         let of_objects: Vec<_> = owners.map(|owner| [owner as u32; 2]).collect();
         let count = of_objects
