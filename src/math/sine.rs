@@ -175,9 +175,9 @@ mod tests {
 
     use super::*;
 
-    /// Maximum radius of the ball of a sine or cosine, in units of double-double: for angles in
-    /// degrees, in radians, and with both parts. The values are upper bounds that follow from the
-    /// error rules of [`Ball`]:
+    /// Maximum radius of the ball of a sine or cosine, in units of 2^−102, the unit roundoff of
+    /// double-double. The three values are for angles in degrees, in radians, and with both parts.
+    /// The values are upper bounds that follow from the error rules of [`Ball`]:
     ///
     /// - Reduced angle r: at most 8 units of r for degrees, and 12·π/4 units for radians.
     /// - Sine and cosine at |r| = π/4: 19.9 and 19.6 units for degrees, 23.4 and 22.1 for radians.
