@@ -1,9 +1,9 @@
 //! Divisions of a pixel into n cells such that a sampling method guarantees one sample in each
 //! cell.
 //!
-//! In: a method and the number n of a pixel's samples. Out: the divisions that hold for every seed
-//! and every pixel. They follow from the methods' own files: `bricks` defines the cells of regular
-//! and jittered samples, and `multi_jittered` its grid.
+//! In: a method and the number n of a pixel's samples. Out: the divisions for which this is
+//! guaranteed with every seed and in every pixel. They follow from the methods' own files. For
+//! example, `bricks` defines the cells of regular and jittered samples.
 
 use super::{bricks::Bricks, multi_jittered::MultiJittered};
 use crate::scene::Method;

@@ -202,8 +202,8 @@ impl Writer {
     }
 }
 
-/// Returns whether an object with these indices may have the name. An object that `for` repeats has
-/// its indices in the name, such as `Ball[3, 1]`.
+/// Returns whether an object with the indices `indices` may have the name `name`. An object that
+/// `for` repeats has its indices in the name, such as `Ball[3, 1]`.
 fn is_name(name: &str, indices: &[u32]) -> bool {
     let word = match indices {
         [] => name,

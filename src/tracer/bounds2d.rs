@@ -157,7 +157,7 @@ fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
                 ball.rad.to_f64() * UP + middle.abs() * QUOTIENT_SLACK,
             )
         });
-        // NaN is excluded first, since `f64::min` and `f64::max` ignore it.
+        // NaN is excluded here, because `f64::min` and `f64::max`, which are used below, ignore it.
         let is_finite = |range: &Interval| range.low.is_finite() && range.high.is_finite();
         if ![x, y, z].iter().all(is_finite) {
             return Hull::Unbounded;

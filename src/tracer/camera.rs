@@ -63,10 +63,10 @@ impl Basis {
     /// Computes the basis of a camera with the view direction f: w = −f/|f|, u = (up × w)/|up × w|,
     /// v = w × u. Then u and v are turned by the roll.
     ///
-    /// Numerators are exact, so u is accurate to the last bits even if up and f are almost
-    /// parallel. If they are parallel, u = (h × up)/|h × up|, where h is the [level
-    /// direction](scene::level_direction). This is the u of a camera that looks along h and has the
-    /// same up.
+    /// The numerators of these quotients are exact, so u is accurate to the last bits even if up
+    /// and f are almost parallel. If they are parallel, u = (h × up)/|h × up|, where h is the
+    /// [level direction](scene::level_direction). This is the u of a camera that looks along h and
+    /// has the same up.
     pub fn new(camera: &scene::Camera, image: &Image) -> Self {
         let forward = view_direction(camera);
         let up = Dyadic::vector(camera.up);
@@ -127,14 +127,14 @@ impl<R: Copy> Window<R> {
 pub struct Camera<T: Real> {
     /// Position of the eye, in world coordinates.
     pub eye: DVec3,
-    /// Binary logarithm of the factor by which lengths of the world are multiplied. It keeps the
-    /// lengths of very large and very small worlds within the range of `f64`; for other worlds it
-    /// is 0.
+    /// Binary logarithm of the factor by which lengths of the world are multiplied. The factor
+    /// keeps the lengths of very large and very small worlds within the range of `f64`. For other
+    /// worlds, it is 1 and its logarithm is 0.
     pub exponent: i32,
     /// Unit vectors to the right, down and ahead, in world coordinates.
     pub axes: [Ball3<T>; 3],
-    /// Distance between the centres of neighbouring pixels, as a difference of X or Y, the first
-    /// two components of a [`Direction`].
+    /// Distance between the centres of neighbouring pixels, measured in X or Y, the first two
+    /// components of a [`Direction`].
     pub pitch: T,
     /// Component Z of all [`Direction`]s.
     pub z: T,

@@ -205,8 +205,9 @@ pub(super) fn cover(
 }
 
 /// Removes flat objects of `candidates` that the nearest flat object hides in the whole rectangle
-/// `patch`, although the ranges of their depths overlap. Of parallel layers, only the nearest
-/// remains. Of objects in one plane, only the first in the file remains.
+/// `patch`. The ranges of their depths overlap, so comparing the ranges did not show this. Of
+/// parallel layers, only the nearest remains. Of objects in one plane, only the first in the file
+/// remains.
 fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<VisibilityCandidate>) {
     let is_flat = |candidate: &&VisibilityCandidate| {
         let object = f64::object(&world.geometry, candidate.object);

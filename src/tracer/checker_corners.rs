@@ -422,7 +422,8 @@ impl CheckerForms {
         let least = self.least()?;
         let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));
         let [x, z] = self.across.each_ref().map(|across| {
-            // A ratio of linear forms takes its extremes at the rectangle's corners.
+            // A ratio of linear forms takes its extremes at the rectangle's corners, so only these
+            // are evaluated.
             let values: [f64; 4] = array::from_fn(|i| {
                 let (x, y) = CORNERS[i];
                 across.at(x, y) * inverse[i]

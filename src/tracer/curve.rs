@@ -79,8 +79,7 @@ type Quadratic<T> = [Ball<T>; 6];
 pub struct SubPixelFrame<T: Real> {
     /// The direction (X, Y, Z) through the sub-pixel's centre.
     center: Ball3<T>,
-    /// Side of the sub-pixel, as a difference of X or Y, the first two components of a ray's
-    /// direction.
+    /// Side of the sub-pixel, measured in X or Y, the first two components of a ray's direction.
     pitch: Ball<T>,
 }
 
@@ -201,7 +200,7 @@ impl<T: Real> SubPixelFrame<T> {
         // |h r − (n·r) c|² = R² (n·r)².
         //
         // The left side is a sum of squares that are small near the circle. The formula therefore
-        // does not cancel if the sphere is small and far away.
+        // loses no digits by cancellation if the sphere is small and far away.
         let r = self.directions();
         let offsets = [0, 1, 2].map(|i| [0, 1, 2].map(|k| h * &r[i][k] - &c[i] * &plane[k]));
         let outside = sum(offsets.each_ref().map(|x| product(x, x)));
@@ -242,8 +241,7 @@ fn line_of<T: Real>(linear: &Linear<T>) -> Boundary {
 fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let [a, b, _] = factors;
     let greatest = if a.magnitude() < b.magnitude() { b } else { a };
-    // If the form has no slope, it is constant and has no zero line. Its scale then does not
-    // matter.
+    // If the form has no slope, it is constant and has no zero line. Any divisor will then do.
     let exponent = -greatest.magnitude().exponent();
     let greatest = greatest.scaled(exponent);
     let slope = if greatest.is_zero() {

@@ -357,7 +357,7 @@ fn very_many_objects() {
         let mut object = template.clone();
         object.shape = sphere(dvec3(x, y, -1.0) * depth, radius * depth);
         if let Shape::Sphere(sphere) = &mut object.shape {
-            // Each sphere has its own colour.
+            // Each sphere has its own colour, so that a wrong object is noticed.
             sphere.color.srgb[0] = f64::from(index) / 256.0;
         }
         objects.push(object);

@@ -27,8 +27,8 @@ pub struct Names<'s> {
     pub(super) defined: HashMap<&'s str, Defined>,
     /// The names of `defined`, in the order of their definitions.
     order: Vec<&'s str>,
-    /// Words in parts of the file that could not be parsed. Each such part was reported, and its
-    /// words may be names that it was meant to define, so these names are not reported as
+    /// Words in parts of the file that could not be parsed. Each such part was reported. Its words
+    /// may be names that the author meant to define there, so these names are not reported as
     /// undefined.
     pub(super) parts: HashSet<&'s str>,
     /// Span of the name in each definition of the file, including definitions below the current

@@ -411,8 +411,8 @@ impl<'s> Lowering<'s> {
         let Some(name) = block.name else { return };
         let text = name.text;
         let problem = if !row.is_object {
-            // Text of the block could not be parsed. The name may be a part of it, so it is not
-            // reported.
+            // A part of the block's text could not be parsed. The name may belong to this part, so
+            // it is not reported.
             if !block.bad.is_empty() {
                 return;
             }

@@ -180,7 +180,7 @@ impl CellGrid {
         Some(BoundedObject {
             bounds: self.ends(extent.across)?,
             nearest: Nearness::above(extent.nearest),
-            // The index fits, because 2^32 objects would not fit into memory.
+            // The index fits into 32 bits, because 2^32 objects would not fit into memory.
             object: object as u32,
         })
     }

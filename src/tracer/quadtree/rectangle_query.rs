@@ -47,7 +47,8 @@ impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
         let mut items = self.found;
         items.retain(|item| item.nearest > self.hidden);
         items.sort_unstable_by_key(|item| item.object);
-        // An object that lies in several cells occurs several times.
+        // An object that lies in several cells has several entries, which are now next to each
+        // other. All but one are removed.
         items.dedup_by_key(|item| item.object);
         Some(items)
     }

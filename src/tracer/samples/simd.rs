@@ -114,7 +114,7 @@ impl PixelSurface {
 
 /// Writes to `shown` the code `even` for each sample at which an even number of the lines' forms is
 /// negative, and the code `odd` for each other sample. Writes [`DOUBT`] if a form's sign is
-/// uncertain. `sign` is a buffer.
+/// uncertain. `sign` is a buffer for intermediate results.
 #[inline(always)]
 fn between(
     lines: &[ScaledLine],

@@ -26,8 +26,8 @@ impl Colors {
                 .entry(color.srgb.map(f64::to_bits))
                 .or_insert_with(|| {
                     palette.push(color);
-                    // The index fits, because there are at most two colours per object, and 2^31
-                    // objects do not fit into memory.
+                    // The index fits into 32 bits, because there are at most two colours per
+                    // object, and 2^31 objects do not fit into memory.
                     (palette.len() - 1) as u32
                 })
         };

@@ -305,8 +305,8 @@ impl World {
     ) -> Result<Option<VisibleCrossing>, Doubt> {
         let r = self.geometry.fast.camera.direction(point);
         let mut nearest = None;
-        // Rounded inverse depth of the nearest crossing so far. Objects entirely behind it are
-        // hidden.
+        // Rounded inverse depth of the nearest crossing so far. Objects entirely behind this depth
+        // are hidden.
         let mut hidden = Nearness::NONE;
         let visit = |index| {
             if self.meet(&r, index, &mut nearest)?
