@@ -99,9 +99,9 @@ pub fn by_vertices(shape: Shape) -> Shape {
 }
 
 /// Intersects the line `eye` + t·`d` with a shape. Returns the two values of t, the smaller first;
-/// for a flat shape, they are equal. Returns `None` if the line misses the shape. A triangle counts
-/// as missed if the absolute value of the determinant of Möller and Trumbore's formula is less than
-/// `epsilon`.
+/// for a flat shape, they are equal. Returns `None` if the line misses the shape. A triangle is
+/// treated as missed if the absolute value of the determinant of Möller and Trumbore's formula is
+/// less than `epsilon`.
 #[inline(always)]
 pub fn crossings(shape: &Shape, eye: DVec3, d: DVec3, epsilon: f64) -> Option<[f64; 2]> {
     match shape {

@@ -39,9 +39,9 @@ fn normalized(v: &Dyadic3) -> [Big; 3] {
 }
 
 /// Returns a + b, or 0 if the absolute value of the sum does not exceed the errors of a and b. The
-/// error of each is at most four roundings. It is used to turn the camera's axes u and v by the
-/// roll. With a roll of 45 degrees, some components are sums of opposite numbers, and must become
-/// exactly 0.
+/// error of each is at most four roundings. This sum is used to turn the camera's axes u and v by
+/// the roll. With a roll of 45 degrees, some components are sums of opposite numbers, and must
+/// become exactly 0.
 fn sum(a: &Big, b: &Big) -> Big {
     let sum = a.plus(b);
     let lost = (a.magnitude() + b.magnitude()) * (8.0 * Big::UNIT);

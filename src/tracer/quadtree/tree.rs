@@ -135,8 +135,8 @@ impl CellSquare {
         }
     }
 
-    /// Returns whether an object is longer than the sides of the cell's quarters. Such an object is
-    /// listed in the cell itself. A shorter object intersects at most two quarters along each axis.
+    /// Returns whether an object is wider or taller than the cell's quarters. Such an object is
+    /// listed in the cell itself. Any other object intersects at most two quarters along each axis.
     /// This rule therefore limits an object's entries to four.
     fn keeps(self, item: &BoundedObject) -> bool {
         let Rectangle { low, high } = item.bounds;
