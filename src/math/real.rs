@@ -147,8 +147,8 @@ impl Real for f64 {
     #[inline]
     fn floor(&self) -> (Self, bool) {
         /// Least absolute value at which every `f64` is an even integer: 2^53, because an `f64` has
-        /// a significand of 53 bits. From here on, the number is not converted to an `i64`, into
-        /// which it may not fit.
+        /// a significand of 53 bits. Such a number may not fit into an `i64`, so it is not
+        /// converted to one.
         const ALL_EVEN: f64 = (1u64 << 53) as f64;
         let floor = f64::floor(*self);
         (floor, floor.abs() < ALL_EVEN && floor as i64 & 1 == 1)

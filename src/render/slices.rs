@@ -25,7 +25,7 @@ const EXACT_PIXEL_WORK: u64 = 64;
 #[derive(Debug)]
 pub struct Slices<P> {
     sampling: Sampling,
-    /// The film. Its parts in which no pixel is written yet use no memory.
+    /// The film. The system provides memory for a part of it only when the part is rendered.
     film: Film<P>,
     /// Side of a slice, i.e. of the square that is rendered at a time, in pixels.
     side: u32,

@@ -30,7 +30,8 @@ pub fn draw(rng: &mut impl Rng, n: u64, part: u64, whole: u64) -> u64 {
         let ones = heads(rng, open);
         rest *= 2;
         if rest < whole {
-            // The digit of p is 0. Trials whose own random digit is 1 are above p and fail.
+            // The digit of p is 0. If the same digit of a trial's random number is 1, the number is
+            // above p, and the trial fails.
             open -= ones;
         } else {
             rest -= whole;

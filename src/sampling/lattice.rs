@@ -167,9 +167,9 @@ mod tests {
                     let place = places.start + scale(bits, places.end - places.start);
                     assert_eq!(strata.choose(i, bits), offset(place));
                 }
-                // The offset of place k lies at (2k + 1)/2^54 of the pixel's side. This is inside
-                // of the stratum from i/n to (i + 1)/n for its first and last place, but not for
-                // the places before and after.
+                // The offset with the index k lies at (2k + 1)/2^54 of the pixel's side. The first
+                // and the last offset of the stratum must lie between i/n and (i + 1)/n, and the
+                // offsets before and after them must not.
                 let stratum = |k: u64| (u128::from(2 * k + 1) * u128::from(n)) >> 54;
                 assert_eq!(stratum(places.start), u128::from(i));
                 assert_eq!(stratum(places.end - 1), u128::from(i));

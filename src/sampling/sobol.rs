@@ -7,14 +7,14 @@
 //! lies in every aligned rectangle of width 2^−a and height 2^(a−m), for each a from 0 to m. The
 //! same holds for every further block of 2^m points.
 //!
-//! Owen's scrambling flips each bit of a coordinate, or does not, by a random bit that belongs to
-//! the combination of all higher bits. These combinations are the nodes of a binary tree. In a
-//! pixel with n points, no two points agree in the first m = ⌈log₂ n⌉ bits of a coordinate. So
-//! below these bits every point is alone in its subtree, and its further bits are simply
-//! independent random bits. The result is the true scrambling, with m decisions per coordinate
-//! instead of 53. One 64-bit hash decides six levels of the tree. The scrambling of Laine and
-//! Karras by multiplications was not tried: it is known to have weak bits, and it would save no
-//! time for the numbers of points that pictures use.
+//! Owen's scrambling flips some bits of each coordinate. A random bit decides whether a bit is
+//! flipped; there is one random bit for each combination of all higher bits. These combinations are
+//! the nodes of a binary tree. In a pixel with n points, no two points agree in the first m = ⌈log₂
+//! n⌉ bits of a coordinate. Below these m levels, every subtree therefore contains at most one
+//! point, and the point's further bits are simply independent random bits. The result is the true
+//! scrambling, with m decisions per coordinate instead of 53. One 64-bit hash decides six levels of
+//! the tree. The scrambling of Laine and Karras by multiplications was not tried: it is known to
+//! have weak bits, and it would save no time for the numbers of points that pictures use.
 
 use std::ops::Range;
 
@@ -24,9 +24,9 @@ use super::{lattice, rng::Key};
 /// levels have 2^6 − 1 nodes, for which the 64 bits of a hash are just enough.
 const LEVELS: u32 = 6;
 
-/// Maximum number of points whose bits before the scrambling are stored. Such points differ in at
-/// most 12 bits, so that two hashes, of six levels each, scramble a point. For more points, the
-/// bits are computed point by point.
+/// Maximum number of points whose bits before the scrambling are stored. Any two of these points
+/// differ in one of their first 12 bits, so that two hashes, of six levels each, scramble a point.
+/// For more points, the bits are computed point by point.
 const MAX_STORED: u64 = 1 << (2 * LEVELS);
 
 /// The first points of the Sobol' sequence, prepared for scrambling.

@@ -29,7 +29,8 @@ pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -
         TRIANGLE.v2.name,
     ];
     const DIRECTIONS: [&str; 2] = [CAMERA.direction.name, CAMERA.up.name];
-    // Steps from a given point to an example near it, in the order in which they are tried.
+    // Differences between a given point and the examples near it, in the order in which they are
+    // tried.
     const STEPS: [DVec3; 6] = [
         DVec3::NEG_Z,
         DVec3::X,

@@ -6,9 +6,9 @@
 //! The picture is divided recursively into quarters. Where only a board is seen, the division
 //! mostly ends at single pixels, and neighbouring pixels share corners. The squares that contain
 //! the corners of a block's pixels are therefore computed row by row in plain arrays, which the
-//! compiler vectorizes. Over a pixel, a ratio of linear forms takes its extremes at the pixel's
-//! corners. A pixel therefore shows only one square if all its corners lie in this square, farther
-//! from the square's edges than the error bound.
+//! compiler vectorizes. A coordinate on the board is a ratio of linear forms, which has its
+//! extremes over a pixel at the pixel's corners. A pixel therefore shows only one square if all its
+//! corners lie in this square, farther from the square's edges than the error bound.
 
 use std::{array, ops::ControlFlow};
 
@@ -96,8 +96,8 @@ pub enum ShownSquares<'a> {
 }
 
 /// Calls `each` with every run of pixels of `part` that shows one colour of the checkerboard
-/// `object`, and with every other pixel, until `each` returns `Break`. Only the board may be seen
-/// in `part`, whose sides are at most [`SIDE`] pixels.
+/// `object`, and with every other pixel, until `each` returns `Break`. The caller ensures that
+/// nothing but the board is seen in `part`, and that its sides are at most [`SIDE`] pixels long.
 ///
 /// Returns `None` if the object is not a checkerboard, or if the board is too far away for its
 /// squares to be distinguished. Otherwise, returns the last result of `each`.
@@ -208,7 +208,8 @@ impl BoardBlock {
     }
 
     /// Calls `each` with the runs of pixels that show one colour, and with the other pixels, in row
-    /// `row`. The row lies between the rows of corners `above` and `below`. Stops if `each` breaks.
+    /// `row`. The row lies between the rows of corners `above` and `below`. Stops if `each` returns
+    /// `Break`.
     fn row(
         &self,
         row: u32,
@@ -273,8 +274,8 @@ impl BoardBlock {
         let [width, height] = [width, height].map(f64::from);
         let local = |block: &LocalForm| {
             let [a, b, c] = block.factors;
-            // The error bound of the block's form is doubled. One half covers the errors of the
-            // factors, the other half the error of the value at the pixel's centre.
+            // The error bound of the block's form is doubled, so that it also covers the rounding
+            // errors of the three factors computed here.
             LocalForm::new([a / width, b / height, a * x + b * y + c], 2.0 * block.rad)
         };
         let CheckerForms { across, below, odd } = &self.squares;
@@ -421,7 +422,8 @@ impl CheckerForms {
         let least = self.least()?;
         let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));
         let [x, z] = self.across.each_ref().map(|across| {
-            // A ratio of linear forms takes its extremes at the rectangle's corners.
+            // A ratio of linear forms takes its extremes at the rectangle's corners, so only these
+            // are evaluated.
             let values: [f64; 4] = array::from_fn(|i| {
                 let (x, y) = CORNERS[i];
                 across.at(x, y) * inverse[i]

@@ -33,8 +33,8 @@ pub struct Convex<T: Real> {
     forms: Vec<Form<T>>,
     /// Number of the forms that bound the object.
     edges: u8,
-    /// Index in `forms` of the first inverse depth of a face where rays do not first hit the
-    /// object. It is `edges` plus the number of the other faces.
+    /// Number of the forms that bound the object and of the faces where rays first hit it. The
+    /// forms from this index on belong to the other faces.
     firsts: u8,
     /// Numbers that identify the planes of the faces. The faces where rays first hit the object
     /// come before the other faces.
@@ -123,9 +123,8 @@ impl<T: Real> Convex<T> {
     /// A ray on an edge hits the object.
     #[inline]
     pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
-        // In the highest precision, the values of all edge functions may be 0. The object is then
-        // too small, or too nearly edge-on, to be distinguished from nothing, and the ray misses
-        // it.
+        // If the object is very small or almost edge-on, the values of all its edge functions may
+        // be 0 even in the highest precision. The ray then misses the object.
         let (mut doubt, mut is_met) = (false, self.is_inside || self.edges == 0);
         for edge in self.edges() {
             match edge.at(r).sign() {

@@ -3,9 +3,9 @@
 //! In: the surfaces of objects in one precision, and a [`SubPixel`]. Out: the objects' silhouettes,
 //! and the curves where their depths are equal, in the coordinates of the sub-pixel.
 //!
-//! The silhouette of a sphere is a conic. Two planes have equal inverse depths on a line. A plane
-//! and a sphere have equal inverse depths on the cone of rays through a circle. Two spheres have
-//! equal inverse depths in their radical plane.
+//! In the picture, the silhouette of a sphere is a conic, and two planes have equal inverse depths
+//! on a line. A plane and a sphere intersect in a circle, which the picture shows as a conic. So do
+//! two spheres, in their radical plane.
 //!
 //! Each form is computed anew in the sub-pixel's coordinates and in high precision, with an error
 //! bound for its values there. The result is therefore right to the last bits of an `f64`, however
@@ -79,8 +79,7 @@ type Quadratic<T> = [Ball<T>; 6];
 pub struct SubPixelFrame<T: Real> {
     /// The direction (X, Y, Z) through the sub-pixel's centre.
     center: Ball3<T>,
-    /// Side of the sub-pixel, as a difference of X or Y, the first two components of a ray's
-    /// direction.
+    /// Side of the sub-pixel, measured in X or Y, the first two components of a ray's direction.
     pitch: Ball<T>,
 }
 
@@ -124,8 +123,8 @@ impl<T: Real> SubPixelFrame<T> {
         //
         // If the eye is outside, the conic has two branches, one in front of the eye and one behind
         // it. The line lies between the branches, and no ray on the line hits the sphere. If the
-        // sphere is a plane to a relative precision of about 1e-200, no precision distinguishes the
-        // two branches.
+        // sphere differs from a plane by a relative amount of only about 1e-200, even the highest
+        // precision does not distinguish the two branches.
         let (c, square) = sphere.parts();
         let ahead = || line_of(&self.along(&c));
         if sphere.is_at_eye() {
@@ -152,9 +151,9 @@ impl<T: Real> SubPixelFrame<T> {
             | (InverseDepth::Sphere(sphere), InverseDepth::Plane(plane)) => {
                 let (c, square) = sphere.parts();
                 let (factors, rad) = self.local(plane);
-                // The factors of the plane are converted to the sphere's unit of inverse depth,
-                // which is a power of two. Its exponent is used, because the inverse of the
-                // sphere's scale may exceed the range of `f64`.
+                // The factors of the plane are converted to the sphere's unit of inverse depth. The
+                // unit is a power of two, so only its exponent is needed. The unit itself is the
+                // inverse of the sphere's scale, and may exceed the range of `f64`.
                 let exponent = -(libm::frexp(sphere.scale()).1 - 1);
                 let linear = factors.map(|mid| Ball { mid, rad }.scaled(exponent));
                 Some(self.circle(&c, &square, &linear, &Ball::exact(1.0)))
@@ -201,7 +200,7 @@ impl<T: Real> SubPixelFrame<T> {
         // |h r − (n·r) c|² = R² (n·r)².
         //
         // The left side is a sum of squares that are small near the circle. The formula therefore
-        // does not cancel if the sphere is small and far away.
+        // loses no digits by cancellation if the sphere is small and far away.
         let r = self.directions();
         let offsets = [0, 1, 2].map(|i| [0, 1, 2].map(|k| h * &r[i][k] - &c[i] * &plane[k]));
         let outside = sum(offsets.each_ref().map(|x| product(x, x)));
@@ -242,8 +241,7 @@ fn line_of<T: Real>(linear: &Linear<T>) -> Boundary {
 fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let [a, b, _] = factors;
     let greatest = if a.magnitude() < b.magnitude() { b } else { a };
-    // If the form has no slope, it is constant and has no zero line. Its scale then does not
-    // matter.
+    // If the form has no slope, it is constant and has no zero line. Any divisor will then do.
     let exponent = -greatest.magnitude().exponent();
     let greatest = greatest.scaled(exponent);
     let slope = if greatest.is_zero() {
@@ -254,7 +252,8 @@ fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let factors = factors
         .each_ref()
         .map(|x| x.scaled(exponent).over(&slope).to_f64());
-    // Maximum relative rounding error of the quotients, and of their conversion to `f64`.
+    // Maximum relative rounding error of the line's factors: each is a quotient by the greater
+    // slope, converted to `f64`.
     let unit = f64::UNIT + 8.0 * T::UNIT;
     let rounding = unit * (factors[0].abs() + factors[1].abs() + factors[2].abs());
     // The error bound covers the roundings of the quotient, and the rounding of the slope to `f64`.
@@ -340,9 +339,9 @@ impl Conic {
     /// Returns an interval that contains the values of the conic's form over the pixel.
     pub fn over_pixel(&self) -> Interval {
         // Extremes lie at corners, or where the derivative vanishes along a side or in all
-        // directions. An extreme may be computed at an inaccurate position. This hardly matters,
-        // because the form differs there by half the product of the distance and the gradient,
-        // which is almost 0.
+        // directions. An extreme may be computed at an inaccurate position. This hardly matters:
+        // the gradient is almost 0 near an extreme, so the form's value at this position is almost
+        // the extreme value.
         let [a, b, c, d, e, f] = self.factors.map(|factor| factor.hi);
         let at = |x: f64, y: f64| x * (a * x + 2.0 * (b * y + d)) + y * (c * y + 2.0 * e) + f;
         let mut range = Interval {

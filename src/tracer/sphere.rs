@@ -114,9 +114,9 @@ impl<T: Real> Sphere<T> {
         let m = cx.times(&r.y).minus(&cy.times(&r.x));
         let cross = k.times(&k).plus(&l.times(&l)).plus(&m.times(&m));
         let (rad_q, rad_b) = if T::LAST {
-            // No higher precision can resolve a doubt of the highest one. Its error bounds are
-            // therefore computed for this ray alone. In the middle of the widest views, they are
-            // far smaller than the bounds for the whole window.
+            // In the highest precision, the error bounds are computed for this ray alone, because
+            // no higher precision could decide an uncertain case. In the middle of the widest
+            // views, these bounds are far smaller than the bounds for the whole window.
             radii::<T>(
                 self.center.each_ref().map(Real::magnitude),
                 self.rad_c,

@@ -55,8 +55,8 @@ impl<'s> Lowering<'s> {
                     let problem = problem.at(name.span, "this name is taken").help(help);
                     self.problems.push(problem);
                 }
-                // The name is defined without a value. It is uncertain which of its two meanings a
-                // use of the name has, so uses are not reported.
+                // The name is defined without a value. A use of the name may mean the predefined
+                // value or this definition, so uses are not reported.
                 self.names.define(name, None, &definition.value);
             }
             (None, None) => {
@@ -180,8 +180,8 @@ impl<'s> Lowering<'s> {
         lowered
     }
 
-    /// Returns the schema's row for the kind of a block. Reports an unknown kind, and then returns
-    /// the row of the nearest kind, if there is one.
+    /// Returns the schema's row for the kind of a block. If the kind is unknown, reports it and
+    /// returns the row of the nearest kind, if there is one.
     fn row(&mut self, block: &tree::Block<'s>) -> Option<&'static BlockRow> {
         let kind = block.kind?;
         let row = schema::block(kind.text);
@@ -411,8 +411,8 @@ impl<'s> Lowering<'s> {
         let Some(name) = block.name else { return };
         let text = name.text;
         let problem = if !row.is_object {
-            // Text of the block could not be parsed. The name may be a part of it, so it is not
-            // reported.
+            // A part of the block's text could not be parsed. The name may belong to this part, so
+            // it is not reported.
             if !block.bad.is_empty() {
                 return;
             }

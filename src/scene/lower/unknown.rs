@@ -384,7 +384,7 @@ impl<'s> Lowering<'s> {
         let written: Option<Vec<(String, Applicability)>> = written.collect();
         let (written, applicability): (Vec<String>, Vec<Applicability>) =
             written?.into_iter().unzip();
-        // A comment between the parts would be lost, so the fix is then not safe.
+        // A comment between the elements would be lost, so the fix is not safe if there is one.
         let text = self.sources.text(value.span);
         let has_comment = text.contains("//") || text.contains("/*");
         let least = Applicability::safe_if(!has_comment);

@@ -11,7 +11,7 @@ use super::{
 impl Cells {
     /// Calls `visit` with the objects that the ray through a point may hit, until `visit` fails.
     /// `visit` returns the rounded inverse depth of the nearest crossing so far; objects entirely
-    /// behind it are skipped.
+    /// behind this depth are skipped.
     #[inline]
     pub(super) fn visit<E>(
         &self,
@@ -39,7 +39,7 @@ impl Cells {
 
 /// Calls `visit` with the objects of one list that the ray through a point may hit, the nearest
 /// first. `visit` returns the rounded inverse depth of the nearest crossing so far, which is stored
-/// in `hidden`. Stops at the first object that is entirely behind it.
+/// in `hidden`. Stops at the first object that is entirely behind this depth.
 #[inline]
 pub(super) fn visit_list<E>(
     list: &[BoundedObject],

@@ -18,13 +18,12 @@ pub(super) struct Search<'a, F> {
     rectangle: &'a Rectangle,
     /// Maximum number of entries in `found`. An object has an entry for each cell that lists it.
     most: usize,
-    /// Function that is called with an object that fills the rectangle. It returns a rounded
-    /// inverse depth that the object has at least in the whole rectangle. Objects entirely behind
-    /// this depth are hidden.
+    /// Function that is called with an object that fills the rectangle. It returns the rounded
+    /// minimum of the object's inverse depth over the rectangle. Objects entirely behind this depth
+    /// are hidden.
     behind: F,
-    /// Greatest result of `behind` for the objects found so far: a rounded inverse depth that one
-    /// of these objects has at least in the whole rectangle. Objects entirely behind this depth are
-    /// hidden.
+    /// Greatest result of `behind` for the objects found so far. Objects entirely behind this depth
+    /// are hidden.
     hidden: Nearness,
     found: Vec<BoundedObject>,
 }
@@ -48,7 +47,8 @@ impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
         let mut items = self.found;
         items.retain(|item| item.nearest > self.hidden);
         items.sort_unstable_by_key(|item| item.object);
-        // An object that lies in several cells occurs several times.
+        // An object that lies in several cells has several entries, which are now next to each
+        // other. All but one are removed.
         items.dedup_by_key(|item| item.object);
         Some(items)
     }
