@@ -260,11 +260,11 @@ impl<'a, const N: usize> Integrator<'a, N> {
         (flow.is_continue() && !is_over()).then_some(film.pixels)
     }
 
-    /// Calls `show` with each area that shows only one object, and with each other pixel, together
-    /// with the fraction of the area that shows each object. The world must be made by
-    /// [`World::by_object`], so that palette indices stand for objects. If the work limit is
-    /// exceeded, each remaining pixel is treated as showing only the object in its middle. Returns
-    /// whether the errors of all fractions are at most 1e-6.
+    /// Calls `show` with each area that shows only one entry of the world's palette, and with each
+    /// other pixel, together with the fraction of the area that shows each entry. An entry is a
+    /// colour or, in a world made by [`World::by_object`], an object. If the work limit is exceeded,
+    /// each remaining pixel is treated as showing only the entry in its middle. Returns whether the
+    /// errors of all fractions are at most 1e-6.
     pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
         let mut is_exact = true;
         let mut curves = Vec::new();

@@ -53,14 +53,14 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     let corners = corners.map(|corner| view.at_depth(corner, facts.d));
     let window = view.eye + view.ahead * facts.d;
     let in_window = view.at_depth(middle, facts.d);
-    let size = corners[0].distance(view.eye);
-    let is_near = |hit: &Hit| hit.t <= FARTHEST * size;
+    let to_corner = corners[0].distance(view.eye);
+    let is_near = |hit: &Hit| hit.t <= FARTHEST * to_corner;
     let end = match &hit {
         Some((hit, _)) if is_near(hit) => hit.point,
         Some(_) => view.eye + (in_window - view.eye) * 3.0,
         None => view.eye + (in_window - view.eye) * 2.0,
     };
-    let reach = 1.6 * end.distance(view.eye).max(size);
+    let reach = 1.6 * end.distance(view.eye).max(to_corner);
 
     let mut points = vec![view.eye, window, end];
     points.extend(corners);

@@ -31,7 +31,7 @@ const PITCH: DVec2 = DVec2::new(226.0, 262.0);
 /// # Errors
 ///
 /// Returns a sentence for the user.
-pub fn most(count: u64) -> Result<(), String> {
+pub fn refuse_too_many(count: u64) -> Result<(), String> {
     if count <= MOST {
         Ok(())
     } else {
@@ -52,7 +52,7 @@ pub fn draw(scene: &Scene, [x, y]: [u32; 2]) -> Result<String, String> {
         scene.image.height,
     )
     .samples_per_pixel();
-    most(count)?;
+    refuse_too_many(count)?;
     let mut canvas = Canvas::new(3.0 * PITCH.y + 14.0);
     let mut told = Vec::new();
     for (index, method) in Method::SAMPLED.into_iter().enumerate() {
@@ -130,7 +130,7 @@ pub fn strata(canvas: &mut Canvas, method: Method, n: u64, corner: DVec2, side: 
 
 /// Tints one stratum of each kind that the method uses: a cell, a column or a row. Returns the CSS
 /// class and the name of each tinted stratum.
-pub fn marked(
+pub fn tint_strata(
     canvas: &mut Canvas,
     method: Method,
     n: u64,

@@ -49,7 +49,7 @@ pub const KINDS: [(&str, Kind); 5] = [
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Choice<'a> {
     /// Column and row of the pixel. It is for the figures of the camera, of a pixel, and of all
-    /// methods.
+    /// methods, which takes the pixel (0, 0) if there is none.
     pub pixel: Option<[u32; 2]>,
     /// Name of the triangle. It is for the figure of a triangle.
     pub object: Option<&'a str>,

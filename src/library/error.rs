@@ -39,7 +39,8 @@ pub enum Error {
     /// The text or the data are not a valid scene. All mistakes are listed.
     #[error(transparent)]
     Mistakes(#[from] Mistakes),
-    /// There is not enough memory for a picture, or no thread can be started.
+    /// A picture cannot be rendered: there is not enough memory, no thread can be started, the area
+    /// to render does not lie in the picture, or the render was cancelled.
     #[error(transparent)]
     Render(#[from] RenderError),
     /// Two pictures have different sizes.

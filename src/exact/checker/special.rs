@@ -10,7 +10,7 @@
 //! F_s(y) = e^z·E_s(z) = ∫_0^∞ e^(iyv)·(1 + v)^(−s) dv.
 //!
 //! F_s(−y) is the conjugate of F_s(y), and F_s+1 = (1 − z·F_s)/s (DLMF 8.19.12). The relative error
-//! of the computed values is about 1e-14.
+//! of F_3 is about 1e-14, and that of F_5 at most about 1e-13, at |y| = 64 ([`integrals`]).
 
 use std::{f64::consts::FRAC_PI_2, sync::LazyLock};
 
@@ -402,7 +402,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ways_of_computing_them_agree_where_they_meet() {
+    fn the_series_of_f3_agree_where_they_meet() {
         close(expanded(&EXPANSIONS, 64.0), asymptotic(64.0, 3), 1e-15);
         close(expanded(&EXPANSIONS, 3.0), power_series(3.0), 1e-14);
     }
@@ -411,7 +411,7 @@ mod tests {
     /// terms of it are enough here: the third is at most 6·7·8·9·y⁻⁴ of the first, 3.03e-13 at y =
     /// 10⁴. The tolerance adds a few roundings to this.
     #[test]
-    fn both_parts_of_large_integrals_have_all_their_digits() {
+    fn integrals_of_large_arguments_have_all_their_digits() {
         for y in [1e4, -1e4, 3e7, 5e10, -1e15] {
             for (s, [re, im]) in (3..).map(f64::from).zip(integrals(y)) {
                 let expected = [
@@ -427,7 +427,7 @@ mod tests {
     }
 
     #[test]
-    fn they_are_the_integrals() {
+    fn f3_is_its_integral() {
         // Number of steps of the midpoint rule that computes F_3(y) = ∫_0^∞ e^(iyv)·(1 + v)^(−3) dv
         // for comparison. With v = x/(1 − x), this is the integral of (1 − x)·e^(iyv) over x from 0
         // to 1. With a hundredth of the steps, the error would exceed the tolerance.

@@ -1,9 +1,8 @@
 //! Estimates of the samples and the time that each method needs to reach an error, and a ranking of
 //! the methods by CPU time.
 
-use super::{
-    results::{LEAST_BEND, Measurement, MethodSeries, Run, SeriesPoint, bend, end_slope},
-    statistics,
+use super::results::{
+    EndSlope, LEAST_BEND, Measurement, MethodSeries, Run, SeriesPoint, bend, end_slope,
 };
 use crate::scene::Method;
 
@@ -133,8 +132,7 @@ impl MethodSeries {
             Some(many) => self.between(&steps[enough - 1], many, error),
             None => {
                 let slope = slope_beyond(steps)?;
-                let more = libm::pow(error / last_run.error, 1.0 / slope);
-                (slope < 0.0).then(|| (last * more).ceil())?
+                (last * libm::pow(error / last_run.error, 1.0 / slope)).ceil()
             }
         };
         per_pixel.is_finite().then(|| Estimate {
@@ -165,17 +163,19 @@ impl MethodSeries {
 
 /// Returns the slope along which a line of errors is extrapolated beyond its last point. This is
 /// the slope at the line's end or, if the line bends there, that of its last segment. Returns
-/// `None` if the numbers of samples are too close to each other.
+/// `None` if the numbers of samples are too close to each other, or if more samples hardly reduce
+/// the error, since a small slope may be noise.
 fn slope_beyond(steps: &[Measured]) -> Option<f64> {
     let points = steps.iter().map(|(per_pixel, run)| (*per_pixel, run.error));
     let points: Vec<_> = points.collect();
-    let slope = end_slope(&points)?;
-    match bend(&points) {
+    let whole = end_slope(&points)?;
+    let slope = match bend(&points) {
         Some(bend) if bend.abs() > LEAST_BEND => {
-            statistics::slope(&points[points.len().saturating_sub(2)..])
+            end_slope(&points[points.len().saturating_sub(2)..])?
         }
-        _ => Some(slope),
-    }
+        _ => whole,
+    };
+    (slope < -EndSlope::LEAST).then_some(slope)
 }
 
 /// Returns the least number of samples that is at least `per_pixel` and equals n·n or n·(n + 1) for

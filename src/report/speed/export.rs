@@ -84,7 +84,6 @@ fn of_runs(runs: &[Run]) -> Value {
 }
 
 /// Converts a measurement to JSON. Numbers that are not finite become null.
-#[doc(hidden)]
 pub fn to_json(measured: &Measurement) -> Value {
     let whole = measured.whole();
     let (machine, reference) = (&measured.machine, &measured.reference);

@@ -108,7 +108,7 @@ impl EndSlope {
     /// Minimum value of −`slope` at which the report says that more samples reduce the error. A
     /// smaller value may come from noise in the measurement. For independent samples, the value is
     /// 0.5, far above the minimum.
-    const LEAST: f64 = 0.05;
+    pub const LEAST: f64 = 0.05;
 
     /// Returns the factor by which the error falls if there are four times as many samples,
     /// 4^−`slope`. Returns `None` if more samples do not help, or if the line bends.

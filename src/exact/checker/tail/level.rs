@@ -93,7 +93,7 @@ pub(super) fn sum(
     let model = if is_steady {
         4.0 / STEADY
     } else {
-        1000.0 * UNIT * w / lines + 2.4 / (w * lines)
+        500.0 * UNIT * w / lines + 2.4 / (w * w * lines)
     };
     // Up to mode n, the phase of each end is rotated n/2 times, each time by a product with four
     // roundings. For two ends, this makes 4n roundings. The rotations are computed numbers with as
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_series_has_before_another_begins() {
+    fn partial_sums_of_lerch_series() {
         for theta in [0.0, 1e-6, -1e-3, 0.02, 0.7, 3.0, -PI] {
             let found = partial(theta, 5000.0, 3000.0, places(theta, 3000.0));
             for (s, found) in (3..).zip(found) {

@@ -140,8 +140,9 @@ pub(super) fn sum_from(
     // Σ n^−3 < 1.06.
     let curvature = 1.06 * 0.04 * u2 * u3 * (12.0 * first + 20.0 * second * u + 30.0 * third * u2);
     let later = bound_of(MODE_TERMS + 1..=series.terms);
-    // The exponential integrals have errors of up to 1e-14, or 90 roundings. The Lerch series V_s
-    // have errors of less than 500 roundings of w^−2. In mode n, the rotation of the phase adds n
+    // The exponential integral F_3 has an error of up to 1e-14, or 90 roundings, and F_5 one of up
+    // to 1e-13, but a factor that is smaller by the depth squared. The Lerch series V_s have errors
+    // of less than 500 roundings of w^−2. In mode n, the rotation of the phase adds n
     // roundings.
     let rounding = 1000.0 * UNIT * first * all_terms * u2;
     BoundedSum {
