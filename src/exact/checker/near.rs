@@ -5,8 +5,8 @@
 //! of the squares in it, each multiplied by its sign, in square pixels, with an error bound. The
 //! board has two families of lines, those between columns and those between rows of squares. The
 //! lines of one family cut the polygon into strips, and the lines of the other family cut each
-//! strip into squares (`clip`). The bound is the sum of each cut's position error times its length,
-//! plus the rounding errors of the areas.
+//! strip into squares (`clip`). The bound is the total area of two kinds of errors: by rounding, a
+//! cut may be displaced along its whole length, and the computed areas may be wrong.
 
 use glam::DVec2;
 
@@ -199,8 +199,9 @@ impl CompensatedSum {
     fn sum(&self) -> BoundedSum {
         BoundedSum {
             value: self.value + self.rest,
-            // The final sum is rounded by at most one unit roundoff, because its absolute value is
-            // at most 1. The rounding errors of adding up `rest` are far smaller.
+            // The addition has an error of at most one unit roundoff, because the absolute value of
+            // the sum is at most 1. The errors of adding up `rest` are far below the second unit
+            // roundoff.
             bound: self.bound + 2.0 * UNIT,
         }
     }
