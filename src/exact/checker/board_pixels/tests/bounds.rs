@@ -1,5 +1,5 @@
-//! Compares the results of batched pixels, and their error bounds, with sums over squares that are
-//! computed with hundreds of bits of precision.
+//! Checks the results of batched pixels, and their error bounds. The reference is a sum over the
+//! board's squares, computed in multiple precision.
 
 use std::cell::RefCell;
 
