@@ -227,7 +227,8 @@ fn behind_links(path: &Path) -> io::Result<WriteTarget> {
         },
         Err(error) if error.kind() == io::ErrorKind::NotFound => match fs::read_link(path) {
             // The link leads to a file that does not exist, so the new file is created at the end
-            // of the link. If links form a cycle, the system reports another error.
+            // of the link. If links form a cycle, the error is not `NotFound`, so the recursion
+            // ends.
             Ok(target) => behind_links(&folder(path).join(target)),
             Err(_) => Ok(WriteTarget::File(FileTarget {
                 path: path.to_owned(),

@@ -212,7 +212,7 @@ fn terms(
 /// Returns the potential and the floor's density at a corner of a polygon. The differences of the
 /// potential between the ends of the edges are part of the polygon's integral. The potential is a
 /// sum over derivatives of order 0 to `terms` − 1. The density is in square pixels per square of
-/// the board, and is proportional to the rounding error of the potential.
+/// the board. The rounding error of the potential is proportional to the density.
 fn potential(board: &Homography, corner: &Corner, terms: usize) -> (f64, f64) {
     match terms {
         0..=2 => potential_of::<2, 4>(board, corner, terms),

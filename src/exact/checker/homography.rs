@@ -294,9 +294,9 @@ impl Homography {
     pub(in crate::exact) fn displacement_error(&self, polygon: &[DVec2]) -> f64 {
         let (_, perimeter) = measure(polygon);
         // Errors e of the forms displace a point by v = M⁻¹·e, where M is the matrix of the three
-        // forms. The displacement changes the form L only by its error, L(v) = e_L. Points near the
-        // horizon therefore hardly move perpendicular to the horizon, even if they move far along
-        // it.
+        // forms. The displacement changes the value of the form L only by the error of L. Points
+        // near the horizon therefore hardly move perpendicular to the horizon, even if they move
+        // far along it.
         let levels = polygon.iter().map(|&p| form(&self.below, p));
         let [least, more] = self.across_horizon;
         let across = (least + more * levels.fold(0.0, f64::max)).min(self.displacement);

@@ -211,7 +211,7 @@ static EXPANSIONS: LazyLock<Vec<Expansion>> = LazyLock::new(expansions);
 /// v)^(−s) dv.
 ///
 /// Their recurrence is s·F_(s+1) = 1 + iy·F_s (DLMF 8.19.12). A step from F_s to F_(s+1) multiplies
-/// an error by y/s, and a step back divides it by that. For |y| below [`LARGE`], the two steps
+/// an error by y/s; the opposite step divides it by y/s. For |y| below [`LARGE`], the two steps
 /// from F_3 multiply an error by at most y²/12, about 340. For larger |y|, the steps start at F_5.
 pub(super) fn integrals(y: f64) -> [Complex; 3] {
     let size = y.abs();

@@ -312,10 +312,11 @@ impl BoardLanes {
                 break;
             };
             // The chord is stored from the point where the pixel's boundary enters the strips
-            // before the line to the point where it leaves these strips. It is a side of the strip
-            // before the line, backwards, and of the strip after the line, forwards. These strips
-            // have opposite signs, so that the chord's total weight is −2 times the sign of the
-            // strip before the line.
+            // before the line to the point where it leaves these strips. The chord is a side of two
+            // strips. In the outline of the strip after the line, it has the stored direction; in
+            // that of the strip before the line, the opposite one. The two strips have opposite
+            // signs, so that the chord's total weight is −2 times the sign of the strip before the
+            // line.
             let [up, down] = ends;
             for i in 0..PIXELS {
                 let is_one = (crossings[0][i] == 1.0) & (crossings[1][i] == 1.0);
