@@ -436,10 +436,9 @@ impl Section {
         // Compares points of the two arcs that have the same curve parameter. Heights are measured
         // in y from the direction of this arc's chord. If the weights are equal, a point of each
         // arc is the same weighted mean of that arc's three control points. The heights then differ
-        // by at most the largest height difference between control points. Unequal weights move a
-        // point by at most their difference times the length of a side of the control polygon. A
-        // difference in x changes y by at most this difference times the slope of the steepest
-        // tangent.
+        // at most as much as those of two control points. Unequal weights move a point by at most
+        // their difference times the length of a side of the control polygon. A difference in x
+        // changes y by at most its product with the steepest slope.
         //
         // Rounding errors move a point by less than the sum of two terms. The first is eight times
         // the error of the arc's area, divided by the arc's width. The second is the rounding error

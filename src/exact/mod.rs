@@ -314,7 +314,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
 
     /// Computes the fraction of the pixel (`x`, `y`) that shows each colour. While the total error
     /// bound of the pixel's parts exceeds the tolerance, quarters the part with the largest bound,
-    /// except at a limit ([`MIN_SIDE`], [`MAX_QUARTERINGS`]) or if its last quartering hardly
+    /// unless a limit ([`MIN_SIDE`], [`MAX_QUARTERINGS`]) forbids it or the last quartering hardly
     /// helped. Stops when the budget is spent or [`MAX_MEMORY`] would be exceeded.
     fn pixel_shares(
         &self,

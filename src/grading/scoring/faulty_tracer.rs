@@ -309,9 +309,9 @@ fn face(Cuboid { min, max, .. }: &Cuboid, point: DVec3) -> usize {
     off.min_position()
 }
 
-/// Intersects a ray with a sphere as a program with a common mistake does. The formula −b ± √(b² −
-/// c), the roots of t² + 2 b t + c = 0, is correct only for rays of length 1, but here the ray
-/// reaches to the view plane, which is `distance` from the eye.
+/// Intersects a ray with a sphere as a faulty program does. Its formula −b ± √(b² − c), the roots
+/// of t² + 2 b t + c = 0, is correct only for rays of length 1, but here the ray reaches to the
+/// view plane, which is `distance` from the eye.
 fn with_unit_rays(sphere: &Sphere, distance: f64, eye: DVec3, ray: DVec3) -> Option<[f64; 2]> {
     let from = eye - sphere.center;
     let b = from.dot(distance * ray);
