@@ -31,7 +31,8 @@ const HEAD: &str = "# Files that pinhole made here, and replaces unless they wer
 const LIST_LIMIT: u64 = 16 << 20;
 
 /// Maximum length, in bytes, of an existing file that may be replaced. Pinhole's output files are
-/// far shorter, so a longer file must have been changed by the user. It is not read completely.
+/// far shorter, so a longer file must have been changed by the user. It is not replaced, and not
+/// read completely.
 const FILE_LIMIT: u64 = 256 << 20;
 
 /// A folder for the output files of a command. No file of the user is replaced in it.

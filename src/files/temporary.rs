@@ -36,9 +36,10 @@ pub fn locked(mut make: impl FnMut() -> io::Result<NamedTempFile>) -> io::Result
     Err(io::Error::other(message))
 }
 
-/// Returns the unlocked files in a folder, with their names. They were left by processes that were
-/// killed. A name must consist of `prefix`, six random characters and `suffix`; other files are
-/// ignored. The returned files are locked until they are closed.
+/// Returns the unlocked files in a folder, with their names. Processes lock their temporary files,
+/// so the unlocked ones were left by processes that were killed. A name must consist of `prefix`,
+/// six random characters and `suffix`; other files are ignored. The returned files are locked until
+/// they are closed.
 pub fn left(folder: &Path, prefix: &str, suffix: &str) -> Vec<(OsString, File)> {
     let is_ours = |name: &OsString| {
         let name = name.to_str();

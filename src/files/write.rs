@@ -63,8 +63,8 @@ impl<'a> Purpose<'a> {
         }
     }
 
-    /// Returns the earlier content of the file, or `None` if the file was not read before. A file
-    /// that has changed since it was read is not replaced.
+    /// Returns the content of the file as it was read before, or `None` if it was not read. Before
+    /// the file is replaced, this content is compared with the present one.
     fn original(self) -> Option<&'a Original> {
         match self {
             Self::Change(original) | Self::Again { original, .. } => Some(original),
@@ -227,7 +227,8 @@ fn behind_links(path: &Path) -> io::Result<WriteTarget> {
         },
         Err(error) if error.kind() == io::ErrorKind::NotFound => match fs::read_link(path) {
             // The link leads to a file that does not exist, so the new file is created at the end
-            // of the link. If links form a cycle, the system reports another error.
+            // of the link. If links form a cycle, the error is not `NotFound`, so the recursion
+            // ends.
             Ok(target) => behind_links(&folder(path).join(target)),
             Err(_) => Ok(WriteTarget::File(FileTarget {
                 path: path.to_owned(),
@@ -257,8 +258,8 @@ fn replace(
     temporary.as_file().sync_all()?;
     check(cancel)?;
     check_folder(target, purpose)?;
-    // If the file was read before, another program may have changed it while the content was
-    // written, so the replacement compares the file with `original` again.
+    // If the file was read before, another program may have changed it while the new content was
+    // written. So the file is compared with `original` again just before it is replaced.
     let (must_be_new, refused) = match purpose.original() {
         Some(original) if original.bytes().is_some() => {
             return exchange::replace(temporary, &target.path, original);

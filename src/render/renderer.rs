@@ -190,8 +190,9 @@ impl<P: film::Pixel> Renderer<'_, P> {
         } = tally;
         let vectors = match trace {
             Trace::Batched(..) if some.end - some.start >= WIDE_SAMPLES => SimdWidth::Widest,
-            // Wide vectors take longer for few samples. They would also slow down the samples that
-            // are traced one by one afterwards. The baseline's vectors are therefore used.
+            // Otherwise, the positions are computed with the vectors that every processor has. Wide
+            // vectors take longer for few samples, and would also slow down the tracing of samples
+            // one by one that follows.
             _ => SimdWidth::Baseline,
         };
         self.sampling.place(vectors, [x, y], samples, some, points);

@@ -17,8 +17,8 @@ use crate::{
 /// a slice by itself, because pixels are not divided.
 pub const SLICE: u64 = 1 << 20;
 
-/// Number of samples that take as long as one exactly computed pixel. It was measured with figure
-/// 9.9, the picture of the assignment.
+/// Number of samples that take as long as one exactly computed pixel, measured with the scene of
+/// `benches/render.rs`.
 const EXACT_PIXEL_WORK: u64 = 64;
 
 /// A partly rendered picture. It is rendered slice by slice, i.e. square by square.
