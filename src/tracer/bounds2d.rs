@@ -4,9 +4,9 @@
 //! inverse depth. The quadtree is built from both. A sphere is bounded by its tangents from the
 //! eye, a triangle or a box by the extremes of its corners.
 //!
-//! The bounds are those of the object's convex hull. They are widened by far more than all rounding
-//! errors. In every precision, the exact test therefore finds that a ray outside of the bounds
-//! misses the object.
+//! The bounds are those of the object's convex hull, widened by far more than all rounding errors.
+//! If a ray outside of the bounds were tested against the object itself, the result would therefore
+//! be a miss in every precision.
 
 use super::{
     camera::Camera, convex::Convex, cuboid, interval::Interval, local_form::Patch, object::Object,
