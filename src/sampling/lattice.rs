@@ -41,8 +41,8 @@ pub fn offset_of_bits(bits: u64) -> f64 {
     offset(bits >> 11)
 }
 
-/// The possible offsets along a pixel's width or height, divided into n equal strata, 1 ≤ n ≤ 2^53.
-/// A place is the index of one of the 2^53 offsets; each stratum contains at least one.
+/// The 2^53 possible offsets along a pixel's width or height, divided into n equal strata, 1 ≤ n ≤
+/// 2^53. An offset is represented by its place, i.e. its index among all offsets.
 #[derive(Debug)]
 pub struct Strata {
     n: u64,

@@ -50,9 +50,9 @@ pub(super) fn order_to_clip<T: Real>(
     if order.is_ok() {
         return order;
     }
-    // The order is uncertain here. The surface therefore cannot lie in the clip plane that is not
-    // `clip`, where its depth would certainly differ, unless the two clip planes are equal. It is
-    // enough to test whether the surface lies in either clip plane.
+    // The order is uncertain here, so the surface is close to `clip`. The scene may also have a
+    // second clip plane, which is not close to `clip` unless the two are equal. The test of whether
+    // the surface lies in either clip plane therefore gives the right answer for `clip`.
     let at = (index, crossing.part);
     // The numbers of two different planes may agree in hundreds of binary digits, so that only the
     // highest precision distinguishes the planes. The highest precision is used last, because
