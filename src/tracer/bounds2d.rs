@@ -32,10 +32,10 @@ pub struct Extent {
 /// certainly not too tight.
 const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Minimum size of the numbers from which an object's bounds are computed, such as lengths and
-/// products of two lengths. If one is smaller, the object is treated as unbounded. `f64` loses
-/// digits below 1e-308. From 1e-280 on, a result certainly has its full relative precision of
-/// 2^−53.
+/// Minimum absolute value of the numbers from which an object's bounds are computed, such as
+/// lengths and products of two lengths. If one is smaller, the object is treated as unbounded.
+/// `f64` has its full relative precision of 2^−53 only above 1e-308. The minimum is far above this
+/// limit.
 const SMALLEST: f64 = 1e-280;
 
 impl Object<f64> {

@@ -205,12 +205,12 @@ pub(super) fn cover(
     Some(candidate)
 }
 
-/// Removes flat objects that one other flat object hides in the whole rectangle `patch`. This other
-/// object is the one with the greatest minimum inverse depth among the flat objects that every ray
-/// through the rectangle hits. Its depth is compared with theirs ray by ray, because the ranges of
-/// the depths over the rectangle may overlap. Of parallel layers, only the nearest remains. Of
-/// objects in one plane, only the first in the file remains. Objects that the near plane may cut
-/// are neither removed nor hide others.
+/// Removes flat objects that another flat object hides in the whole rectangle `patch`. The object
+/// that hides them is the nearest flat one that every ray through the rectangle hits. The ranges of
+/// two objects' inverse depths over the rectangle may overlap although one object is nearer along
+/// every ray, so the objects' planes are compared. Of parallel layers, only the nearest remains. Of
+/// objects in one plane, only the first in the file remains. An object that the near plane may cut
+/// is kept, and hides no other object here.
 fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<VisibilityCandidate>) {
     let is_flat = |candidate: &&VisibilityCandidate| {
         let object = f64::object(&world.geometry, candidate.object);

@@ -237,8 +237,9 @@ fn line_of<T: Real>(linear: &Linear<T>) -> Boundary {
     line(&factors, linear[0].rad + linear[1].rad + linear[2].rad)
 }
 
-/// Returns the line on which a linear form is zero. The form is divided by its greater slope. Forms
-/// of one line, such as the horizon of parallel planes, therefore get equal factors.
+/// Returns the line on which a linear form is zero. The form is divided by its greater slope.
+/// Different forms that are zero on the same line, such as the horizon of parallel planes,
+/// therefore get equal factors.
 fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let [a, b, _] = factors;
     let greatest = if a.magnitude() < b.magnitude() { b } else { a };
@@ -328,8 +329,9 @@ impl Conic {
         if gradient > 0.0 {
             area = area.min(16.0 * self.rad / gradient);
         }
-        // The rounding errors of the determinant are subtracted, so that the bound is certainly
-        // large enough. They are at most two roundings of its products.
+        // The rounding errors of the determinant are subtracted from it, so that the bound on the
+        // area is certainly large enough. They are at most two roundings for each of the
+        // determinant's two products.
         let determinant = determinant - 4.0 * f64::UNIT * (a * c).abs().max(b * b);
         if determinant > 0.0 {
             area = area.min(7.0 * self.rad / determinant.sqrt());

@@ -80,8 +80,8 @@ pub(super) enum ColorPattern {
     /// on the line. A point shows the first colour if the product of the forms' values is positive,
     /// and the second colour if it is negative. If `odd` is set, the two colours are exchanged.
     ///
-    /// The forms are in [`PreparedPixel::lines`], from the end of the surface's `edges` up to but
-    /// without the index `end`.
+    /// The forms are in [`PreparedPixel::lines`], from the end of the surface's `edges` up to,
+    /// but not including, the index `end`.
     Lines { end: usize, odd: bool },
     /// The squares of a checkerboard. For each sample, a division computes the square that it hits.
     Squares(CheckerForms),
