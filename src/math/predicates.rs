@@ -112,10 +112,10 @@ pub fn box_corners(center: DVec3, size: DVec3) -> (DVec3, DVec3) {
     (corner(-1.0), corner(1.0))
 }
 
-/// Returns `a` + `b`/2, rounded once. Half of a subnormal number may itself need rounding, so the
-/// formula (2a + b)/2 is used. Only the sum is rounded, because a sum that needs rounding is not
-/// subnormal, and halving it is exact. If the sum overflows, a + b/2 is computed instead. Then b/2
-/// is exact, or negligible beside a.
+/// Returns `a` + `b`/2, rounded once. Half of a subnormal number may itself need rounding, so (2a +
+/// b)/2 is computed. If the sum 2a + b needs rounding, it is not subnormal, so halving it is exact.
+/// If the sum overflows, a + b/2 is computed instead: b is then either large enough for b/2 to be
+/// exact, or too small to change a.
 fn offset_by_half(a: f64, b: f64) -> f64 {
     let twice = 2.0 * a + b;
     if twice.is_finite() {

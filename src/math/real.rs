@@ -86,8 +86,8 @@ impl Real for f64 {
     type Radius = f64;
     /// Maximum relative error of one operation: the unit roundoff, 2^−53.
     const UNIT: f64 = 1.0 / (1u64 << 53) as f64;
-    /// Maximum absolute error of an operation that underflows: 2^−1022, the least normal number.
-    /// The true maximum is smaller, half of the smallest subnormal number, 2^−1075.
+    /// Upper bound of the absolute error of an operation that underflows: 2^−1022, the least normal
+    /// number. The error is in fact at most 2^−1075, half of the smallest subnormal number.
     const TINY: f64 = f64::MIN_POSITIVE;
     const LAST: bool = false;
 

@@ -19,5 +19,6 @@ pub enum SimdWidth {
 }
 
 /// Whether loops are also compiled for wider vectors than every processor of the architecture has.
-/// This is done on x86-64. On other architectures, a second copy would only enlarge the program.
+/// This is done on x86-64. On other architectures, the loops would be compiled a second time for
+/// the same vectors, which would only enlarge the program.
 pub const HAS_WIDER: bool = cfg!(target_arch = "x86_64");

@@ -75,8 +75,8 @@ pub fn sin_cos<T: Real>(angle: Angle) -> (Ball<T>, Ball<T>) {
 }
 
 /// Converts a ball of [`Double`] to a ball of `T` in generic code, where `T` must be [`Double`],
-/// too. The conversion changes nothing: the two `f64` of a double-double number are already its
-/// rounded sum and the rounding error.
+/// too. The two `f64` of a double-double number are the number rounded to `f64` and the remaining
+/// difference. Adding the two therefore gives the same number again, without rounding.
 fn from_double<T: Real>(x: &Ball<Double>) -> Ball<T> {
     let [hi, lo, rad] = [x.mid.hi, x.mid.lo, x.rad].map(T::from_f64);
     Ball {
@@ -179,8 +179,9 @@ mod tests {
     /// double-double. The three values are for angles in degrees, in radians, and with both parts.
     /// The values are upper bounds that follow from the error rules of [`Ball`]:
     ///
-    /// - Reduced angle r: at most 8 units of r for degrees, and 12·π/4 units for radians.
-    /// - Sine and cosine at |r| = π/4: 19.9 and 19.6 units for degrees, 23.4 and 22.1 for radians.
+    /// - Radius of the reduced angle r: at most 8·|r| units for degrees, and 12·π/4 for radians.
+    /// - Radius of the sine and of the cosine at |r| = π/4: 19.9 and 19.6 units for degrees, 23.4
+    ///   and 22.1 units for radians.
     /// - Angles with both parts, where two products of numbers about √½ are added:
     ///   2 + 2 + 4 + √½·(19.9 + 19.6 + 23.4 + 22.1) = 68.1 units.
     const WIDEST: [f64; 3] = [20.0, 24.0, 69.0];

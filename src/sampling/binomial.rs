@@ -147,9 +147,10 @@ mod tests {
                 let k = f64::ceil(share * n);
                 let step = ln_weight(k + 1.0, n) - ln_weight(k, n);
                 let expected = libm::log((n - k) / (k + 1.0));
-                // A weight is at most n·ln 2/2 and is computed with a few roundings, so the first
-                // term of `limit` covers its error. The second term covers the next term of
-                // Stirling's series, 1/(1260·k⁵), which changes by less than 1e-13 from k to k + 1.
+                // `limit` bounds the error of `step`. Its first term covers rounding errors: a
+                // weight is at most n·ln 2/2 and is computed with a few roundings. Its second term
+                // covers the first term of Stirling's series that `ln_weight` omits, 1/(1260·k⁵),
+                // which changes by less than 1e-13 from k to k + 1.
                 let limit = 4.0 * f64::EPSILON * n + 1e-13;
                 assert!(
                     (step - expected).abs() < limit,

@@ -41,8 +41,9 @@ pub fn offset_of_bits(bits: u64) -> f64 {
     offset(bits >> 11)
 }
 
-/// The possible offsets along a pixel's width or height, divided into n equal strata, 1 ≤ n ≤ 2^53.
-/// A place is the index of one of the 2^53 offsets; each stratum contains at least one.
+/// The 2^53 possible offsets along a pixel's width or height, divided into n strata whose numbers
+/// of offsets differ by at most 1; 1 ≤ n ≤ 2^53. An offset is represented by its place, i.e. its
+/// index among all offsets.
 #[derive(Debug)]
 pub struct Strata {
     n: u64,
@@ -53,9 +54,9 @@ pub struct Strata {
     stored: Vec<Stratum>,
 }
 
-/// One of n strata, i.e. equal intervals of the 2^53 possible places along a pixel's side. A
-/// stratum has ⌊2^53/n⌋ places or one more. It is stored as one number: twice its first place, plus
-/// 1 if it has one place more.
+/// One of n strata, i.e. of n intervals into which the 2^53 possible places along a pixel's side
+/// are divided. Each has ⌊2^53/n⌋ places or one more. It is stored as one number: twice its first
+/// place, plus 1 if it has one place more.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stratum(u64);
 

@@ -92,9 +92,9 @@ fn at_leaves<const MOST: usize>(axes: &[Owen; 2], tops: &[[u16; 2]], [x, y]: [&m
 }
 
 /// Multiplies the bits of a number by Pascal's triangle modulo 2: bit j of the result is the sum,
-/// over all k, of the binomial coefficient (k over j) times bit k, modulo 2. The coefficient is odd
-/// if all bits of j are also set in k. The positions j and k, from 0 to 63, have six bits, so six
-/// steps are enough: one for each of these bits.
+/// over all k, of the binomial coefficient "k choose j" times bit k, modulo 2. The coefficient is
+/// odd if all bits of j are also set in k. The positions j and k, from 0 to 63, have six bits, so
+/// six steps are enough: one for each of these bits.
 fn pascal(mut bits: u64) -> u64 {
     bits ^= (bits >> 1) & 0x5555_5555_5555_5555;
     bits ^= (bits >> 2) & 0x3333_3333_3333_3333;
@@ -183,9 +183,10 @@ impl Owen {
     }
 }
 
-/// Returns the scrambled value of each combination of `levels` bits. The combinations are the nodes
-/// of a tree. `flips` contains a random bit for each node: bit 1 for the root, bits 2 and 3 for its
-/// children, and so on.
+/// Returns the scrambled value of each combination of `levels` bits. A combination is a path from
+/// the root of a binary tree to a leaf. `flips` contains a random bit for each inner node of the
+/// tree: bit 1 for the root, bits 2 and 3 for its children, and so on. If it is set, the bit of the
+/// path at this node is flipped.
 #[inline(always)]
 fn subtree(flips: u64, levels: u32) -> [u8; 1 << LEVELS] {
     let mut bits = [0; 1 << LEVELS];

@@ -31,8 +31,7 @@ pub struct Fixed {
     pub waiting: usize,
 }
 
-/// Line and column of the problem, in the text to which the fix was applied. The place in the
-/// original file may differ, because earlier fixes may have changed the lines.
+/// A fix that was applied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Done {
     /// Line and column of the problem in the text to which the fix was applied. Earlier fixes may

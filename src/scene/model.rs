@@ -178,8 +178,8 @@ impl Object {
         }
     }
 
-    /// Returns the object with the name `name` and without indices, so that it is no longer a
-    /// repetition. No other object of the scene may have this name.
+    /// Returns the object with the name `name`, and without the indices that it has if `for`
+    /// repeats its block. No other object of the scene may have this name.
     #[must_use]
     pub fn named(self, name: impl Into<String>) -> Self {
         Self {

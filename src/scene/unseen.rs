@@ -100,10 +100,11 @@ impl Outside {
 /// get the same colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
     // If the camera looks straight down or up, its up vector may be parallel to the view direction.
-    // The directions of the window's sides are then unknown, and are assumed to be x and z. The
-    // window's extents along x and z are then its two sides. If it were turned, both extents would
-    // be at least its shorter side. Squares that are lost under this assumption are therefore lost
-    // in any case.
+    // It is then unknown how the window is turned about the view direction, and its sides are
+    // assumed to be parallel to x and z. The smaller of the window's extents along x and z is then
+    // its shorter side. If the window were turned otherwise, both extents would be at least as
+    // great. If the squares cannot be told apart under the assumption, they therefore cannot be
+    // told apart in any case.
     let straight = || {
         let (from, to) = camera.view.ends(camera.eye);
         let along_y = (to - from).normalize().y.abs() > 1.0 - MARGIN;

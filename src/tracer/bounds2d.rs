@@ -4,9 +4,9 @@
 //! inverse depth. The quadtree is built from both. A sphere is bounded by its tangents from the
 //! eye, a triangle or a box by the extremes of its corners.
 //!
-//! The bounds are those of the object's convex hull. They are widened by far more than all rounding
-//! errors. In every precision, the exact test therefore finds that a ray outside of the bounds
-//! misses the object.
+//! The bounds are those of the object's convex hull, widened by far more than all rounding errors.
+//! If a ray outside of the bounds were tested against the object itself, the result would therefore
+//! be a miss in every precision.
 
 use super::{
     camera::Camera, convex::Convex, cuboid, interval::Interval, local_form::Patch, object::Object,
@@ -32,10 +32,10 @@ pub struct Extent {
 /// certainly not too tight.
 const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Minimum size of the numbers from which an object's bounds are computed, such as lengths and
-/// products of two lengths. If one is smaller, the object is treated as unbounded. `f64` loses
-/// digits below 1e-308. From 1e-280 on, a result certainly has its full relative precision of
-/// 2^−53.
+/// Minimum absolute value of the numbers from which an object's bounds are computed, such as
+/// lengths and products of two lengths. If one is smaller, the object is treated as unbounded.
+/// `f64` has its full relative precision of 2^−53 only above 1e-308. The minimum is far above this
+/// limit.
 const SMALLEST: f64 = 1e-280;
 
 impl Object<f64> {

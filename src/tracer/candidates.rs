@@ -63,11 +63,13 @@ pub fn narrowed(
 
 /// Replaces `out` by all objects that may be seen in the area `part`, in file order.
 ///
-/// Returns `false` and leaves `out` unchanged if the search has found so many list entries that
-/// more than `most` objects certainly meet the area, or if `is_worth` returns `false`. With
-/// `is_worth`, the caller can reject areas that show too many objects. Its arguments are the number
-/// of objects found, and how many objects' bounds contain a ray through the area, as a mean over
-/// all rays.
+/// Returns `false` and leaves `out` unchanged if the quadtree finds more than four times `most`
+/// list entries for the area. An object has at most four entries, so there are then more than
+/// `most` objects.
+///
+/// Also returns `false` if `is_worth` does. With this function, the caller can reject an area that
+/// shows too many objects. Its first argument is the number of objects found. The second is the
+/// number of the objects' bounds that contain a ray through the area, averaged over all such rays.
 #[must_use]
 pub fn within(
     world: &World,
@@ -130,9 +132,8 @@ fn visible_of(
 ) {
     out.clear();
     let [near, far] = clips_over(world, patch);
-    // `hidden` is the greatest minimum of the inverse depth among the objects that every ray
-    // through the rectangle hits. An object is hidden if its maximum inverse depth is below
-    // `hidden`.
+    // An object that every ray through the rectangle hits hides all objects whose maximum inverse
+    // depth is below its own minimum. `hidden` is the greatest of these minimums so far.
     let mut hidden = f64::NEG_INFINITY;
     for (object, bounds) in among {
         let Some(mut candidate) = cover(world, object, patch, near, far) else {
@@ -204,10 +205,12 @@ pub(super) fn cover(
     Some(candidate)
 }
 
-/// Removes flat objects of `candidates` that the nearest flat object hides in the whole rectangle
-/// `patch`. The ranges of their depths overlap, so comparing the ranges did not show this. Of
-/// parallel layers, only the nearest remains. Of objects in one plane, only the first in the file
-/// remains.
+/// Removes flat objects that another flat object hides in the whole rectangle `patch`. The object
+/// that hides them is the nearest flat one that every ray through the rectangle hits. The ranges of
+/// two objects' inverse depths over the rectangle may overlap although one object is nearer along
+/// every ray, so the objects' planes are compared. Of parallel layers, only the nearest remains. Of
+/// objects in one plane, only the first in the file remains. An object that the near plane may cut
+/// is kept, and hides no other object here.
 fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<VisibilityCandidate>) {
     let is_flat = |candidate: &&VisibilityCandidate| {
         let object = f64::object(&world.geometry, candidate.object);

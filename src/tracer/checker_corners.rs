@@ -3,12 +3,13 @@
 //! In: a block of pixels in which only one board is seen. Out: runs of pixels that show one colour,
 //! and for every other pixel the squares that it shows.
 //!
-//! The picture is divided recursively into quarters. Where only a board is seen, the division
-//! mostly ends at single pixels, and neighbouring pixels share corners. The squares that contain
-//! the corners of a block's pixels are therefore computed row by row in plain arrays, which the
-//! compiler vectorizes. A coordinate on the board is a ratio of linear forms, which has its
-//! extremes over a pixel at the pixel's corners. A pixel therefore shows only one square if all its
-//! corners lie in this square, farther from the square's edges than the error bound.
+//! Elsewhere, the picture is divided recursively into quarters. Where only a board is seen, this
+//! would mostly go on down to single pixels, and the square at a corner would be computed for each
+//! of the four pixels that share it. The squares at all corners of a block's pixels are therefore
+//! computed first, row by row in plain arrays, which the compiler vectorizes. A coordinate on the
+//! board is a ratio of linear forms, which has its extremes over a pixel at the pixel's corners. A
+//! pixel therefore shows only one square if all its corners lie in this square, farther from the
+//! square's edges than the error bound.
 
 use std::{array, ops::ControlFlow};
 
@@ -58,8 +59,8 @@ pub struct CheckerPixel {
     /// corners is top left, top right, bottom left, bottom right.
     pub(crate) corners: [[f64; 4]; 2],
     /// Whether the pixel's corners certainly lie in the squares `corners`. If not, a corner may lie
-    /// in a neighbouring square. The error bounds of `squares` are then widened to at least the
-    /// corner's distance from the line between the two squares.
+    /// in a square next to the one in `corners`. The error bounds in the field `squares` are then
+    /// so large that they cover the distance of the corner from the line between these two squares.
     pub(crate) is_certain: bool,
 }
 
@@ -376,6 +377,7 @@ fn compare_simd(above: &CornerRow, below: &CornerRow, out: &mut [f64; SIDE]) {
 
 /// The position on a checkerboard as ratios of linear forms: x = N₀/ℓ and z = N₁/ℓ, in squares. x
 /// and z rounded down are the indices of a square. `across` contains N₀ and N₁, and `below` is ℓ.
+/// `odd` is `true` if the square with the indices (0, 0) has the second colour.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CheckerForms {
     pub(crate) across: [LocalForm; 2],

@@ -143,8 +143,9 @@ impl<T: Real> Checkerboard<T> {
             odd ^= times as i64 & 1 == 1;
             let multiple = T::from_f64(times);
             let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&multiple)));
-            // `rad` bounds the error of the denominator ℓ, and is at least 12 roundings of ℓ. The
-            // doubled bound also covers the roundings of the multiple of ℓ and of the subtraction.
+            // `rad` bounds the error of the denominator ℓ, and is large enough for 12 roundings of
+            // ℓ. These are more than occur here: the error of ℓ is multiplied by `times`, and the
+            // product and the difference are rounded. Twice `rad` · |`times`| covers all of this.
             (factors, own_rad + rad * (2.0 * times.abs()))
         });
         let mut forms = [a, b, (below, rad)];

@@ -162,9 +162,9 @@ impl<T: Real> Convex<T> {
     /// inverse depth, or with the greatest if `which` is `Greater`. `start` is the index of the
     /// first of `faces` among all faces. Returns `None` if there are no faces.
     ///
-    /// If the two extreme inverse depths differ by no more than their errors, the crossing is
-    /// assigned to an edge, not to a plane. Its inverse depth may then be wrong by at most the
-    /// larger of the two errors.
+    /// If another plane's inverse depth differs from the result by no more than the errors of the
+    /// two, the crossing is assigned to an edge, not to a plane. The error bound of its inverse
+    /// depth is then the larger of the two error bounds.
     #[inline]
     fn extreme(
         &self,

@@ -18,8 +18,9 @@ use crate::{
     scene,
 };
 
-/// Prepares a box, or only its face `only` as a flat object. The number of a face's plane is twice
-/// the number of its axis, plus one for the greater coordinate.
+/// Prepares a box, or only its face `only` as a flat object. The number of a face is twice the
+/// number of the axis to which it is perpendicular, plus one if it is the face at the greater
+/// coordinate.
 pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<u8>) -> Convex<T> {
     let (mut fronts, mut backs, mut edges) = (Vec::new(), Vec::new(), Vec::new());
     for plane in 0..6_u8 {

@@ -4,8 +4,8 @@
 //! and the curves where their depths are equal, in the coordinates of the sub-pixel.
 //!
 //! In the picture, the silhouette of a sphere is a conic, and two planes have equal inverse depths
-//! on a line. A plane and a sphere intersect in a circle, which the picture shows as a conic. So do
-//! two spheres, in their radical plane.
+//! on a line. A plane and a sphere intersect in a circle, which the picture shows as a conic. Two
+//! spheres also intersect in a circle, which lies in their radical plane.
 //!
 //! Each form is computed anew in the sub-pixel's coordinates and in high precision, with an error
 //! bound for its values there. The result is therefore right to the last bits of an `f64`, however
@@ -87,8 +87,9 @@ impl<T: Real> SubPixelFrame<T> {
     /// Places a sub-pixel in the view plane of a camera.
     pub fn new(camera: &Camera<T>, sub_pixel: SubPixel) -> Self {
         let r = sub_pixel.middle(camera);
-        // A coordinate of the direction is computed with five roundings, and the side with fewer.
-        // An error bound of eight roundings therefore covers both.
+        // The components of the direction are computed with five roundings each, and the
+        // sub-pixel's side with fewer. An error bound of eight roundings is therefore enough for
+        // all of these numbers.
         let ball = |mid: T| Ball {
             rad: mid.magnitude() * (8.0 * T::UNIT) + T::TINY,
             mid,
@@ -122,9 +123,9 @@ impl<T: Real> SubPixelFrame<T> {
         // ray's direction. The line is c·r = 0.
         //
         // If the eye is outside, the conic has two branches, one in front of the eye and one behind
-        // it. The line lies between the branches, and no ray on the line hits the sphere. If the
-        // sphere differs from a plane by a relative amount of only about 1e-200, even the highest
-        // precision does not distinguish the two branches.
+        // it. The line lies between the branches, and no ray on the line hits the sphere. An
+        // exception is a sphere that differs from a plane by a relative amount of only about
+        // 1e-200. Even the highest precision does not distinguish its branches.
         let (c, square) = sphere.parts();
         let ahead = || line_of(&self.along(&c));
         if sphere.is_at_eye() {
@@ -165,9 +166,9 @@ impl<T: Real> SubPixelFrame<T> {
     /// Returns the curve of rays that hit two spheres at equal depths. Returns `None` for
     /// concentric spheres.
     fn spheres(&self, a: &Sphere<T>, b: &Sphere<T>) -> Option<Boundary> {
-        // The curve lies in the radical plane of the spheres. For a point q of this plane, |q − c|²
-        // − R² is equal for both spheres, with the centre c and the radius R of each. With c and c'
-        // the two centres, and C = c·c − R² of each sphere, it follows that
+        // Let c be the centre of one sphere, R its radius, and C = c·c − R². Let c', R' and C' be
+        // the same for the other sphere. The curve lies in the radical plane of the spheres. Every
+        // point q of this plane satisfies |q − c|² − R² = |q − c'|² − R'². It follows that
         //
         // 2 (c' − c)·q = C' − C.
         let ((c, square), (d, other)) = (a.parts(), b.parts());
@@ -236,8 +237,9 @@ fn line_of<T: Real>(linear: &Linear<T>) -> Boundary {
     line(&factors, linear[0].rad + linear[1].rad + linear[2].rad)
 }
 
-/// Returns the line on which a linear form is zero. The form is divided by its greater slope. Forms
-/// of one line, such as the horizon of parallel planes, therefore get equal factors.
+/// Returns the line on which a linear form is zero. The form is divided by its greater slope.
+/// Different forms that are zero on the same line, such as the horizon of parallel planes,
+/// therefore get equal factors.
 fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let [a, b, _] = factors;
     let greatest = if a.magnitude() < b.magnitude() { b } else { a };
@@ -327,8 +329,9 @@ impl Conic {
         if gradient > 0.0 {
             area = area.min(16.0 * self.rad / gradient);
         }
-        // The rounding errors of the determinant are subtracted, so that the bound is certainly
-        // large enough. They are at most two roundings of its products.
+        // The rounding errors of the determinant are subtracted from it, so that the bound on the
+        // area is certainly large enough. They are at most two roundings for each of the
+        // determinant's two products.
         let determinant = determinant - 4.0 * f64::UNIT * (a * c).abs().max(b * b);
         if determinant > 0.0 {
             area = area.min(7.0 * self.rad / determinant.sqrt());

@@ -24,9 +24,8 @@ use crate::{
 /// half of its factor.
 const LINEAR_ROUNDING: f64 = 4.0 * f64::UNIT;
 /// Upper bound of the rounding error of a [`LocalQuadratic`]'s value, divided by the sum of the
-/// absolute values of the form's factors. The value is 16 roundings. Five of them cover the
-/// roundings of each factor, relative to this factor. The others cover the roundings of products
-/// and sums in the evaluation.
+/// absolute values of the form's factors. The value is 16 roundings: at most five in the
+/// computation of a factor, and at most eleven in the products and sums of the evaluation.
 pub const LOCAL_ROUNDING: f64 = 16.0 * f64::UNIT;
 /// Error bound for underflow in the evaluation of a form, which has at most 16 products. If a
 /// product is below the normal numbers of `f64`, its error is at most half of the least positive

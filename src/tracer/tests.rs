@@ -173,7 +173,7 @@ fn the_quadtree_changes_nothing() {
 
 /// Checks that `f64` alone decides every one of many random samples, because a higher precision
 /// takes a hundred times as long. In the second scene, two objects lie in one plane. `f64` leaves
-/// samples undecided only in the rows at the horizon, about 1e-10 of them, so none is expected
+/// at most about 1e-10 of all samples undecided, in the rows at the horizon, so none is expected
 /// here.
 #[test]
 fn f64_alone_decides_nearly_everything() {
@@ -238,8 +238,9 @@ fn what_a_ray_meets_is_within_bounds() {
 
 #[test]
 fn bounds_are_tight() {
-    // The tested rays lie at the height of the eye. There they meet the left and right ends of the
-    // shapes: of a sphere whose centre is at this height, and of a box.
+    // All tested rays lie in the horizontal plane through the eye. They reach the leftmost and the
+    // rightmost points of each shape's picture, because the spheres' centres lie in this plane, and
+    // the box's vertical edges cross it.
     for shape in [
         sphere(dvec3(0.4, 0.0, -8.0), 0.5),
         sphere(dvec3(-2.0, 0.0, -8.0), 1e-6),

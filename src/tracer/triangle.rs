@@ -136,8 +136,8 @@ struct SeenPlane<T: Real> {
     normal: Ball3<T>,
     height: Ball<T>,
     /// Side of the plane on which the eye lies: the sign of n·q for a point q of the plane,
-    /// relative to the eye. The normal n is the given one, before it is divided by its greatest
-    /// component.
+    /// relative to the eye. Here, n is the normal before it is divided by its greatest component,
+    /// because the division may reverse it.
     side: Ordering,
 }
 

@@ -27,9 +27,9 @@ impl<'s> Evaluator<'_, 's> {
             return value;
         }
         let defined = self.names.defined.get(name);
-        // A definition below this use may already be evaluated: if there are `--set` arguments, all
-        // definitions are evaluated before the blocks. A text of the file may use only names that
-        // are defined above it, so such a definition is left out.
+        // A definition below this use may already have a value: if there are `--set` arguments, all
+        // definitions are evaluated before the blocks. In the text of the file, a name may only be
+        // used below its definition, so a definition below the use is ignored.
         let is_above =
             |defined: &&Defined| span.source != SourceId::File || defined.place.start < span.start;
         if let Some(defined) = defined.filter(is_above) {

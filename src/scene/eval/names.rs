@@ -185,9 +185,9 @@ impl<'s> Names<'s> {
         self.definitions.get(name).copied()
     }
 
-    /// Returns the names that are defined so far, for a comparison with an undefined name. Reduces
-    /// the number of comparisons that may still be made. Returns `None` if this number is too small
-    /// for a comparison with all known names.
+    /// Returns the names that are defined so far, with which an undefined name is to be compared.
+    /// The total number of such comparisons is limited; this function deducts one for each known
+    /// name from the number that remains. Returns `None` if too few remain.
     pub(super) fn to_compare(&self) -> Option<&[&'s str]> {
         // Approximate number of predefined colours and constants. An undefined name is compared
         // with them too. An estimate is enough, because it only limits the number of searches.

@@ -158,7 +158,8 @@ impl<'s> Lowering<'s> {
         }
         let unknown: Vec<_> = left().filter(|field| !is_known(field)).collect();
         // If two unknown words probably mean the same field, it is uncertain which of them is
-        // right. The field is recorded as given, so that it is not reported as missing.
+        // right. The field is nevertheless recorded as given, so that it is not also reported as
+        // missing.
         let mut tried: Vec<&str> = Vec::new();
         for field in unknown
             .iter()

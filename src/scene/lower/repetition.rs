@@ -272,8 +272,9 @@ impl<'s> Lowering<'s> {
     fn unused_index(&mut self, name: Name<'s>, block: &Block<'s>) {
         let behind = Span::new(name.span.source, name.span.end, block.span.end);
         let text = self.sources.text(behind);
-        // If the block contains the index's name in another capitalization, this word is reported
-        // as an undefined name. The index is then not reported as unused as well.
+        // If the block contains the index's name in another capitalization, that word is reported
+        // as an undefined name. It probably means the index, so the index is not reported as
+        // unused.
         let mut words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
         if block.open.is_none()
             || has_name(text, name.text)
@@ -361,9 +362,9 @@ impl<'s> Lowering<'s> {
         let with_index: Vec<Span> = with_index
             .filter(|it| self.depends(*it, repetition))
             .collect();
-        // A problem of the first combination of indices often occurs with all other combinations
-        // too. If such a problem is about a value that depends on no index, it gets no label with
-        // the indices.
+        // The first combination of indices is tried first, so a problem that all combinations have
+        // is found there. If such a problem is about a value that depends on no index, a label with
+        // the indices would be misleading, so none is added.
         let is_first = values.iter().all(|&value| value == 0);
         // If an expression depends on an index, a fix must not replace it by the value that it has
         // for one combination.

@@ -259,8 +259,8 @@ impl<'s> Lowering<'s> {
     }
 
     /// Returns the meaning of an unknown field that probably stands for `field`, with a fix that
-    /// renames it and converts its value if necessary. The value of a `--set` argument cannot be
-    /// converted, so there the fix replaces only the name.
+    /// renames it and converts its value if necessary. There is no fix if the value does not suit
+    /// `field`, or if it must be converted but stands in a `--set` argument.
     fn renamed(
         &mut self,
         block: &LoweredBlock<'s>,

@@ -42,9 +42,9 @@ impl Quadtree {
     }
 
     /// Calls `visit` with the objects that a ray may hit, from the largest cell down, until `visit`
-    /// fails. `visit` returns the rounded inverse depth of the nearest crossing so far; objects
-    /// entirely behind this depth are skipped. Returns `None` if the direction is outside of the
-    /// window.
+    /// fails. `visit` returns the inverse depth of the nearest crossing so far, rounded down;
+    /// objects entirely behind this crossing are skipped. Returns `None` if the direction is
+    /// outside of the window.
     #[inline]
     pub fn visit<E>(
         &self,
@@ -55,10 +55,10 @@ impl Quadtree {
     }
 
     /// Returns the objects that rays through the rectangle `patch` of the view plane may hit, in
-    /// file order. `behind` is called with an object that fills the rectangle, and returns the
-    /// rounded minimum of the object's inverse depth over the rectangle. Objects entirely behind
-    /// this depth are left out. Returns `None` if more than four times `most` list entries are
-    /// found. An object has at most four entries, so there are then more than `most` objects.
+    /// file order. `behind` is called with an object whose bounds contain the rectangle. It returns
+    /// an inverse depth, rounded down: everything farther away is hidden by the object, and is left
+    /// out. Returns `None` if more than four times `most` list entries are found. An object has at
+    /// most four entries, so there are then more than `most` objects.
     pub fn within(
         &self,
         patch: &Patch,
@@ -81,8 +81,8 @@ impl Quadtree {
     }
 
     /// Calls `visit` with the objects of `nearby` that a ray may hit, the nearest first, until
-    /// `visit` fails. `visit` returns the rounded inverse depth of the nearest crossing so far;
-    /// objects entirely behind this depth are skipped. `nearby` is the result of
+    /// `visit` fails. `visit` returns the inverse depth of the nearest crossing so far, rounded
+    /// down; objects entirely behind this crossing are skipped. `nearby` is the result of
     /// [`nearby`](Self::nearby) for a rectangle that contains the ray. Returns `None` if the
     /// direction is outside of the window.
     #[inline]

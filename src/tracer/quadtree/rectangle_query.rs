@@ -18,12 +18,13 @@ pub(super) struct Search<'a, F> {
     rectangle: &'a Rectangle,
     /// Maximum number of entries in `found`. An object has an entry for each cell that lists it.
     most: usize,
-    /// Function that is called with an object that fills the rectangle. It returns the rounded
-    /// minimum of the object's inverse depth over the rectangle. Objects entirely behind this depth
-    /// are hidden.
+    /// Function that is called with an object whose bounds contain the rectangle. If every ray
+    /// through the rectangle hits the object, it returns the least of the object's inverse depths
+    /// there. This number is rounded down, so that the object certainly hides every object whose
+    /// inverse depths are all smaller. Otherwise, it returns a number that hides nothing.
     behind: F,
-    /// Greatest result of `behind` for the objects found so far. Objects entirely behind this depth
-    /// are hidden.
+    /// Greatest inverse depth that `behind` has returned so far. An object is hidden if its maximum
+    /// inverse depth, rounded up, is not greater than this value.
     hidden: Nearness,
     found: Vec<BoundedObject>,
 }

@@ -135,9 +135,10 @@ impl<'a> Quartering<'a> {
         })
     }
 
-    /// Returns whether quartering an area costs less than tracing its samples one by one. `objects`
-    /// is the number of objects that may be seen in the area, and `asked` the mean number of
-    /// objects that one sample would test.
+    /// Returns whether quartering an area is expected to take less time than tracing its samples
+    /// one by one. With at most [`OBJECTS_A_CELL`] objects, always returns `true`. `objects` is the
+    /// number of objects that may be seen in the area. `asked` is the number of objects against
+    /// which a sample would be tested, averaged over the area.
     fn is_worth_cutting(&self, area: Area, objects: usize, asked: f64) -> bool {
         let samples = self.samples * area.pixels() as f64;
         objects <= OBJECTS_A_CELL || samples * (1.0 + asked) >= ASKED_A_CANDIDATE * objects as f64

@@ -217,18 +217,18 @@ impl PreparedPixel {
             let mut k = first + 1.0;
             while k <= last {
                 let line = across.less(k, below);
-                // `line` is the form of the line with the number k between squares: a positive
-                // multiple of x/square − k, or of z/square − k. If it is positive in the whole
-                // pixel, all of the pixel lies beyond the line, so the parity of its squares
-                // changes.
+                // `line` is a form that is zero on the line with the number k between squares: a
+                // positive multiple of x/square − k, or of z/square − k. If it is positive in the
+                // whole pixel, the first of the pixel's squares lies beyond this line, so `odd`,
+                // the parity of this square, is negated.
                 match line.range().side() {
                     Side::Above => odd = !odd,
                     Side::Below => {}
                     Side::Both => {
                         self.lines.push(line.line());
-                        // `odd` is the parity at points where the forms of all added lines are
-                        // positive. These points lie beyond the line that is added now, so `odd` is
-                        // negated.
+                        // From now on, `odd` is the parity of the square in which the forms of all
+                        // added lines are positive. This square lies beyond the line that is added
+                        // now, so `odd` is negated.
                         odd = !odd;
                     }
                     Side::Unknown => return Err(Hard),

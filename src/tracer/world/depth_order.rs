@@ -50,9 +50,9 @@ pub(super) fn order_to_clip<T: Real>(
     if order.is_ok() {
         return order;
     }
-    // The order is uncertain here. The surface therefore cannot lie in the clip plane that is not
-    // `clip`, where its depth would certainly differ, unless the two clip planes are equal. It is
-    // enough to test whether the surface lies in either clip plane.
+    // The test below asks whether the surface lies in the near or in the far plane, not in which of
+    // the two. This is enough: if the surface lay in the other plane than `clip`, the order would
+    // be certain here, unless the two planes are equal.
     let at = (index, crossing.part);
     // The numbers of two different planes may agree in hundreds of binary digits, so that only the
     // highest precision distinguishes the planes. The highest precision is used last, because

@@ -241,11 +241,11 @@ impl World {
         let among = || among.clone();
         let (mut seen, is_sure) = first_certain!(&self.geometry, point, |r| self.seen(r, among()));
         if !is_sure {
-            // The highest precision has decided. In it, an object is hit if the ray cannot be
-            // distinguished from a ray that hits the object, even if the ray is outside of the
-            // object's bounds in the quadtree. Some callers pass only objects whose bounds contain
-            // the ray, and others pass all objects. To give all callers the same answer, objects
-            // whose bounds do not contain the ray are left out.
+            // The lower precisions were uncertain, so the highest has decided. It also counts a hit
+            // if the ray cannot be distinguished from one that hits the object, even if the ray is
+            // outside of the object's bounds in the quadtree. Some callers pass only objects whose
+            // bounds contain the ray, and others pass all objects. To give all callers the same
+            // answer, objects whose bounds do not contain the ray are left out.
             let near = self.candidates(point);
             let is_near = |object: &usize| near.binary_search(object).is_ok();
             if !among().all(|object| is_near(&object)) {
