@@ -154,7 +154,7 @@ fn render_and_write(
     Ok(done)
 }
 
-/// Time after which a render that is not finished yet is accompanied by coarse pictures. A faster
+/// Time after which coarse pictures are shown until the finished picture is rendered. A faster
 /// render needs none. The value is a guess at when a user gets impatient.
 const PATIENCE: Duration = Duration::from_millis(200);
 

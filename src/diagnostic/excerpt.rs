@@ -126,8 +126,9 @@ impl<'s> Excerpt<'s> {
         if number == 1 {
             range.start = self.source.bom_len().min(range.end);
         }
-        // miette draws labels on consecutive lines in one frame, and counts line numbers from the
-        // first line. An empty line therefore separates lines that are not consecutive.
+        // miette draws labels on consecutive lines in one frame. It is told only the number of the
+        // first line, and counts on from there. Lines that are not consecutive in the source are
+        // therefore separated by an empty line.
         let apart = self.lines.last().is_some_and(|l| l.number + 1 < number);
         if apart {
             self.text.push('\n');

@@ -118,8 +118,9 @@ pub fn overlays(scene: &Scene, which: &ShownObjects) -> Overlays {
     });
     let cut = |depth: f64| {
         let boards = objects().filter_map(|(_, object)| object.shape.checkerboard());
-        // At depth 0, the plane is parallel to the view plane and contains the eye, so it is not
-        // visible. The division then yields infinity or NaN, for which `level` returns no line.
+        // A near or far plane cuts each checkerboard along a line. At depth 0, such a plane
+        // contains the eye, so the line is not visible. The division then yields infinity or NaN,
+        // for which `level` returns no line.
         let lines = boards
             .filter_map(|&Checkerboard { y, .. }| projection.level((y - camera.eye.y) / depth));
         lines.take(MOST_OBJECTS).collect()
