@@ -215,9 +215,9 @@ impl SourceCode for Excerpt<'_> {
     }
 }
 
-/// Returns the part of a label's span that is drawn. Of a label with too many lines, this is only
-/// the first line. Of a label within a line that is longer than `columns` bytes, it is at most the
-/// first `columns`/2 bytes.
+/// Returns the part of a label's span that is drawn. For a label with too many lines, this is only
+/// the first line. If the label lies within one line of more than `columns` bytes, it is at most
+/// the first `columns`/2 bytes of the label.
 fn shorten(span: Span, source: &Source, columns: usize) -> Span {
     let mut span = source.clamped(span);
     let first = source.line(span.start);

@@ -171,8 +171,8 @@ impl Candidate {
     }
 
     /// Returns a copy of the hypothesis with one more mistake. Returns `None` if the mistake is
-    /// impossible in the scene. Also returns `None` if a row of the table, or an exchange of
-    /// colours, changes nothing.
+    /// impossible in the scene. Also returns `None` if the mistake is a row of the table of
+    /// mistakes, or an exchange of colours, and changes nothing.
     pub fn with(&self, mistake: Mistake) -> Option<Self> {
         let mut candidate = self.clone();
         match &mistake {
