@@ -113,7 +113,8 @@ fn check_text(scene: &Path, bytes: &[u8]) -> Result<(), Trouble> {
 }
 
 /// Renders the scene with the text `bytes` and writes its picture. Returns the time when it was
-/// written. The work is interrupted when `is_stale` is set, since there is then a newer text.
+/// written. When `is_stale` is set, there is a newer text, so the work stops with the error
+/// [`Trouble::Interrupted`].
 fn render_and_write(
     args: &WatchArgs,
     bytes: Vec<u8>,
