@@ -94,11 +94,10 @@ fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
             let (old, new) = (before.line(), after.line());
             let [mut is_removed, mut is_added] = [old.is_some(), new.is_some()];
             if let (Some(old), Some(new)) = (old, new) {
-                // Advances the text that has fewer characters before its next line, not counting
-                // white space, until lines that may correspond are reached. If the numbers are
-                // equal, advances the text whose next line is empty, since formatting adds and
-                // removes empty lines. If both next lines are empty, or neither is, advances both
-                // texts.
+                // Makes one step towards the next lines that may correspond: passes a line of the
+                // text that has fewer characters, not counting white space, before this line. If
+                // the numbers are equal, passes the line that is empty, since formatting adds and
+                // removes empty lines. If both lines are empty, or neither is, passes both.
                 let is_empty = |line: &str| line.trim().is_empty();
                 let [old, new] = [
                     (before.solid_before, !is_empty(old)),

@@ -123,7 +123,7 @@ pub fn wrapped(text: &str, width: usize) -> String {
 
 /// Returns where the last column of a table's row starts, as a number of characters. Only columns
 /// that start at `most` or before it are considered. Columns are separated by at least two spaces.
-/// Without such a column, returns 2, or `most` if `most` is less than 2.
+/// Without such a column, returns an ordinary indentation of 2, or `most` if `most` is less.
 fn last_column(line: &str, most: usize) -> usize {
     let letters: Vec<char> = line.chars().take(most + 1).collect();
     let starts = letters.windows(3).enumerate();

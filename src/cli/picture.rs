@@ -83,8 +83,9 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// Adds a part of the picture. Parts that were rendered with samples are ignored. `certain` is
-    /// the number of pixels whose rounded values are proven right.
+    /// Adds the error bounds of a part of the picture, `rendered`, to the certificate. Does nothing
+    /// if the part was rendered with samples. `certain` returns the number of the part's pixels
+    /// whose rounded values are proven right.
     fn add<P>(&mut self, rendered: &Rendered<P>, area: Area, certain: impl Fn(&Exact<P>) -> u64) {
         let Rendered::Exact(exact) = rendered else {
             return;

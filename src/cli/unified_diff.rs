@@ -9,7 +9,8 @@ const AROUND: usize = 3;
 
 /// Maximum number of lines, in both texts together, that are skipped after a difference to find the
 /// place where the texts agree again. If no such place is found, all remaining lines are reported
-/// as changed. The time grows with the square of the limit, since all pairs of places are tried.
+/// as changed. The time grows with the square of the limit, since every pair of a place in one text
+/// and a place in the other may be tried.
 const MOST_STEPS: usize = 1000;
 
 /// A change: lines of the old text, by their indices, and the lines of the new text that replace
@@ -89,7 +90,7 @@ fn place(lines: &Range<usize>) -> String {
 }
 
 /// Returns the changes from `old` to `new`. After a difference, finds the nearest pair of
-/// positions, one in each text, from which two lines agree. There may be more changes than
+/// positions, one in each text, whose next two lines are equal. There may be more changes than
 /// necessary, but applying them always yields `new`.
 fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
     let (mut a, mut b, mut changes) = (0, 0, Vec::new());

@@ -126,8 +126,9 @@ impl<'s> Excerpt<'s> {
         if number == 1 {
             range.start = self.source.bom_len().min(range.end);
         }
-        // miette draws labels on consecutive lines in one frame, and counts line numbers from the
-        // first line. An empty line therefore separates lines that are not consecutive.
+        // miette draws labels on consecutive lines in one frame. It is told only the number of the
+        // first line, and counts on from there. Lines that are not consecutive in the source are
+        // therefore separated by an empty line.
         let apart = self.lines.last().is_some_and(|l| l.number + 1 < number);
         if apart {
             self.text.push('\n');
@@ -214,9 +215,9 @@ impl SourceCode for Excerpt<'_> {
     }
 }
 
-/// Returns the part of a label's span that is drawn. Of a label with too many lines, this is only
-/// the first line. Of a label within a line that is longer than `columns` bytes, it is at most the
-/// first `columns`/2 bytes.
+/// Returns the part of a label's span that is drawn. For a label with too many lines, this is only
+/// the first line. If the label lies within one line of more than `columns` bytes, it is at most
+/// the first `columns`/2 bytes of the label.
 fn shorten(span: Span, source: &Source, columns: usize) -> Span {
     let mut span = source.clamped(span);
     let first = source.line(span.start);

@@ -261,9 +261,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
 
     /// Calls `show` with each area that shows only one entry of the world's palette, and with each
     /// other pixel, together with the fraction of the area that shows each entry. An entry is a
-    /// colour or, in a world made by [`World::by_object`], an object. If the work limit is exceeded,
-    /// each remaining pixel is treated as showing only the entry in its middle. Returns whether the
-    /// errors of all fractions are at most 1e-6.
+    /// colour or, in a world made by [`World::by_object`], an object. If the work limit is
+    /// exceeded, each remaining pixel is treated as showing only the entry in its middle. Returns
+    /// whether the errors of all fractions are at most 1e-6.
     pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
         let mut is_exact = true;
         let mut curves = Vec::new();

@@ -112,8 +112,9 @@ fn kept(method: Method, n: u64) -> String {
 
 /// Draws the cells of a pixel, for a method that places one of the `n` samples in each cell. The
 /// pixel is a square with the top left corner `corner` and the side `side`. A method may divide the
-/// pixel in several ways at once ([`Tiling`]s), for example into cells, rows and columns. The lines
-/// of the first tiling are stronger if it consists of neither whole rows nor whole columns.
+/// pixel in several ways at once ([`Tiling`]s), for example into cells, rows and columns. If the
+/// first tiling is a grid, i.e. consists of neither whole rows nor whole columns, its lines are
+/// drawn stronger, so that the cells can be told from the rows and columns.
 pub fn strata(canvas: &mut Canvas, method: Method, n: u64, corner: DVec2, side: f64) {
     let at = |x: f64, y: f64| corner + DVec2::new(x, y) * side;
     let tilings = if n > 0 { tilings(method, n) } else { vec![] };

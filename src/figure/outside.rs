@@ -161,8 +161,8 @@ pub fn draw_objects(
     }
 }
 
-/// Removes each point of a line that is less than one SVG unit away from the one before it. Such
-/// points are not visible, and many small spheres would make a large file.
+/// Removes each point of a line that is less than one SVG unit away from the one before it, except
+/// the last point. Such points are not visible, and many small spheres would make a large file.
 fn thinned(mut line: Vec<DVec2>) -> Vec<DVec2> {
     let end = line.last().copied();
     line.dedup_by(|next, kept| next.distance_squared(*kept) < 1.0);

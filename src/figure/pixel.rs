@@ -235,8 +235,9 @@ fn name(scene: &Scene, world: &World, at: DVec2) -> String {
     }
 }
 
-/// Returns a pixel that suits the figure: the one with the highest score by [`evenness`]. Pixels at
-/// changes of colour are tried, along the rows of a coarse grid over the picture.
+/// Returns a pixel that suits the figure: the one with the highest score by [`evenness`]. At most
+/// 90 rows of the picture are searched, and only pixels at which the colour changes along the row
+/// are tried. If there is none, returns the pixel in the middle of the picture.
 fn most_colors(scene: &Scene, world: &World) -> [u32; 2] {
     let (width, height) = (scene.image.width, scene.image.height);
     let (columns, rows) = (width.min(64), height.min(90));

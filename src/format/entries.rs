@@ -109,9 +109,9 @@ enum Container {
 }
 
 impl<'s> TokenReader<'_, 's> {
-    /// Returns the entries of `nodes`, i.e. of a file's items or a block's fields, and of the
-    /// comments between the nodes and after them up to the offset `end`. The second list contains
-    /// the comments that stand after a block's `{` on the same line.
+    /// Makes the entries of `nodes` (a file's items or a block's fields), and of the comments
+    /// between and after the nodes, up to the offset `end`. Also returns a list of the comments
+    /// that stand after a block's `{` on the same line.
     fn entries<N>(
         &mut self,
         nodes: impl IntoIterator<Item = impl Borrow<N>>,
@@ -241,10 +241,10 @@ fn entry(what: EntryKind<'_>) -> Entry<'_> {
 /// The comments of one line, and whether a blank line precedes them.
 type CommentLine<'s> = (bool, Vec<&'s str>);
 
-/// Assigns the comments of `gap`, which stands between two tokens, to entries. Comments on the line
-/// of the previous entry are added to that entry. Each further line of comments becomes an entry,
-/// except the last line. The comments of the last line are returned, because the next entry may
-/// stand on the same line.
+/// Assigns comments to entries. `gap` contains the comments between two tokens. Comments on the
+/// line of the previous entry are added to that entry. Each further line of comments becomes an
+/// entry, except the last line. Its comments are returned, because the next entry may stand on the
+/// same line.
 fn comments<'s>(
     gap: Gap<'s>,
     container: Container,

@@ -106,8 +106,8 @@ fn is_whole(tree: &Tree<'_>) -> bool {
 }
 
 /// Returns the mistakes that prevent a text from being formatted, as `check` reports them, without
-/// other problems of the scene. The meaning of names is analyzed, too, since `check` does not
-/// report a missing value of an unknown field.
+/// other problems of the scene. The meaning of names is analyzed, too: if a field is unknown,
+/// `check` does not report that its value is missing, so this is not reported here either.
 fn mistakes(source: &Source) -> Vec<Diagnostic> {
     let sources = Sources::new(source.clone());
     let SemanticModel {

@@ -86,8 +86,8 @@ pub fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
     })
 }
 
-/// Replaces a triangle that is given by its sides by the same triangle, given by its vertices. So
-/// the vertices are not computed again for each ray. Returns other shapes unchanged.
+/// Converts a triangle that is given by its sides to the form with vertices, so that the vertices
+/// are not computed again for each ray. Returns other shapes unchanged.
 pub fn by_vertices(shape: Shape) -> Shape {
     match shape {
         Shape::Triangle(Triangle { outline, color }) => Shape::Triangle(Triangle {

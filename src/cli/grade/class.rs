@@ -160,9 +160,9 @@ impl Class {
     }
 
     /// Excludes files of the assignment's template. A file that is equal in every submission comes
-    /// from the template: if it is a picture, it is marked as not compared; otherwise, it is
-    /// removed. However, if no student has another picture, the equal pictures are kept and
-    /// compared, since all students may have rendered the same picture.
+    /// from the template. If it is a picture, it is kept in the list, but marked so that it is not
+    /// judged; otherwise, it is removed. However, if no student has another picture, the equal
+    /// pictures are judged, since all students may have rendered the same picture.
     fn leave_template(&self, students: &mut [Student], chosen: Option<&Glob>) {
         let is_folder = |student: &&mut Student| {
             let mut files = student.files.iter();
@@ -292,20 +292,21 @@ fn with_companions(students: Vec<Student>) -> Vec<Student> {
     kept
 }
 
-/// Finds the arguments that a shell expanded from a pattern such as `class/*`. Returns the folders
-/// that contain a class. Each folder is mapped to the names of those arguments that lie directly in
-/// it.
+/// Finds the arguments that a shell expanded from a pattern such as `class/*`, where `class` is a
+/// folder with the submissions of a class. Returns these folders. Each is mapped to the names of
+/// the arguments that lie directly in it.
 ///
-/// A folder contains a class if one of its arguments is a Git clone, has a name in Moodle's form,
-/// or is Gradescope's metadata file, or if two of its arguments contain pictures of the same name.
+/// The parent folder of an argument is taken for such a folder in three cases: the argument is a
+/// Git clone; its name is in Moodle's form or that of Gradescope's metadata file; or another
+/// argument in the same folder contains a picture of the same name.
 fn expanded_classes(paths: &[PathBuf]) -> BTreeMap<&Path, BTreeSet<&OsStr>> {
     let mut named = BTreeMap::<&Path, BTreeSet<&OsStr>>::new();
     for path in paths {
         let is_list = name(path) == METADATA && path.is_file();
         let is_class = path.is_dir() || tree::is_zip(path) || is_list;
-        // A link on the command line must be followed, but links inside a class's folder are not.
-        // Therefore, links are excluded here. Paths such as `..` are excluded, too, because they
-        // have no name.
+        // The folders found here are listed later without following the links in them. A link on
+        // the command line must be followed, so it is left out here and read as a folder of its
+        // own. Paths such as `..` are left out, too, because they have no name.
         if is_class && !path.is_symlink() && !name(path).is_empty() {
             named.entry(parent_of(path)).or_default().insert(name(path));
         }

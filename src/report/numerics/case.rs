@@ -71,8 +71,9 @@ pub(super) struct CaseScene {
     bits: usize,
     /// Generator of random points of the picture. By default, all points are equally likely.
     points: Box<dyn Fn(&mut CaseRng) -> SamplePoint>,
-    /// Number of halves of the tests (0, 1 or 2) that use points from the generator `points`. The
-    /// other tests use points close to boundaries between colours.
+    /// Share of the tests that use points from the generator `points`, in halves: 0 for none of the
+    /// tests, 1 for a half, 2 for all. The other tests use points close to boundaries between
+    /// colours.
     halves: u64,
 }
 

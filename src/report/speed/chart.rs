@@ -188,7 +188,8 @@ fn draw(canvas: Canvas, measured: &Measurement, against: &HorizontalAxis) -> Dra
 
 /// Draws the vertical line of the exact method. An arrow at its lower end shows that the method's
 /// error lies below the chart. The other methods' lines run from the top left to the bottom right,
-/// so the label is placed in another corner.
+/// so the label is placed at the lower end of the vertical line in the left half of the chart, and
+/// at its upper end in the right half.
 fn draw_exact(canvas: &Canvas, x: i32, columns: &Range<i32>, rows: &Range<i32>) -> Drawn {
     let end = rows.end - 2;
     let head = [(x - 6, end - 10), (x, end), (x + 6, end - 10)];

@@ -162,9 +162,9 @@ impl MethodSeries {
 }
 
 /// Returns the slope along which a line of errors is extrapolated beyond its last point. This is
-/// the slope at the line's end or, if the line bends there, that of its last segment. Returns
-/// `None` if the numbers of samples are too close to each other, or if more samples hardly reduce
-/// the error, since a small slope may be noise.
+/// the slope fitted to the last three points or, if the line bends there, the slope through the
+/// last two. Returns `None` if the numbers of samples are too close to each other, or if more
+/// samples hardly reduce the error, since a small slope may be noise.
 fn slope_beyond(steps: &[Measured]) -> Option<f64> {
     let points = steps.iter().map(|(per_pixel, run)| (*per_pixel, run.error));
     let points: Vec<_> = points.collect();

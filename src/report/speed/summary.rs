@@ -100,8 +100,8 @@ pub fn verdict(measured: &Measurement, error: f64) -> String {
 }
 
 /// Returns the end of a sentence that recommends methods: those with the fewest samples for
-/// `error`. Extrapolated estimates are ignored. Returns `None` if all other estimates are at least
-/// [`TOO_QUICK`], because the methods can then be compared by time.
+/// `error`. Extrapolated estimates are ignored. Returns `None` if none of the remaining estimates
+/// is below [`TOO_QUICK`], because the methods can then be compared by time.
 fn by_samples(measured: &Measurement, error: f64) -> Option<String> {
     let estimates = measured.series.iter().filter_map(|series| {
         let estimate = measured.estimate(series, error)?;

@@ -31,8 +31,8 @@ let isKept = false;
 /** Drafts that are not stored yet, by key. The host stores them or, if there is no host, the
  * browser. Null stands for a draft that must be deleted. */
 const due = new Map<string, Draft | null>();
-/** Last draft that the user has restored. Its stored copy is kept until its text is saved to the
- * file, since Undo can remove the text from the editor. */
+/** Last draft that the user has restored; null if there is none. Its stored copy is kept until its
+ * text is saved to the file, since Undo can remove the text from the editor. */
 let restored: Draft | null = null;
 /** Drafts that were offered and neither restored nor discarded yet, the newest first. */
 let offers: Draft[] = [];

@@ -21,7 +21,8 @@ const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": ".scn"
 class Scene {
   /** Content of the file when it was last read; null if there was no file. */
   seen: string | null = null;
-  /** Content of the file when editing began. If the file now differs from it, Save asks first. */
+  /** Content of the file when editing began; null if there was no file. If the file now differs
+   * from it, Save asks first. */
   base: string | null = null;
   /** Whether the file was removed after it was read. */
   isGone = false;
@@ -62,8 +63,9 @@ class Files {
   onLeave: () => void = () => {};
   /** Whether the host has sent its scene to this page. */
   isTold = false;
-  /** Draft or link that was restored before the host sent its scene; null if there is none. `base`
-   * is the content of the draft's file when its editing began, and undefined for a link. */
+  /** Draft or link that was restored before the host sent its scene; null if there is none. For a
+   * draft, `base` is the content of its file when editing began, or null if there was no file; for
+   * a link, it is undefined. */
   private early: { base: string | null | undefined; text: string } | null = null;
   /** The scene of the host's file. */
   private hosts = new Scene();

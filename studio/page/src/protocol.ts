@@ -73,7 +73,7 @@ export interface HostedFile {
 }
 
 /** Unsaved text of the page with the key `id`. `base` is the content of the file when editing
- * began. `time` is when the draft was made, in seconds since 1970. */
+ * began; null if there was no file. `time` is when the draft was made, in seconds since 1970. */
 export interface Draft { id: string; name: string; text: string; base: string | null; time: number }
 
 /** Whether the file was saved. If not, `text` is the file's current content. */
