@@ -146,8 +146,9 @@ fn tiny(count: u32) -> String {
 }
 
 /// Returns a scene of `count` overlapping triangles with all orientations. Each is two hundred
-/// times as long as it is wide. Even a small part of the picture is crossed by many of them, so
-/// culling saves little work; it may take up to three times as long as tracing each sample alone.
+/// times as long as it is wide. Many of them cross even a small part of the picture, so culling
+/// finds few objects to leave out. With the work of culling itself, rendering may then take three
+/// times as long as tracing each sample alone.
 fn slivers(count: u32) -> String {
     let mut text = String::from("camera { eye (0, 0, 9) lookat (0, 0, 0) }\n");
     for i in 0..count {
@@ -211,10 +212,10 @@ fn picture(scene: &Scene, way: Way) -> impl Fn() + use<> {
     }
 }
 
-/// Measures how much time it takes to decide without error which surface a ray hits. Compares the
-/// rays per CPU second of three ways: the formulas of a textbook, whose rounding errors cause some
-/// wrong decisions; tracing each sample alone; and the command `render`. All three include the time
-/// to generate the sample points.
+/// Measures how much time it costs to decide without rounding errors which surface a ray hits.
+/// Compares the rays per CPU second of three ways: textbook formulas, whose rounding errors cause
+/// some wrong decisions; exact decisions with each sample traced alone; and exact decisions with
+/// culling. All three include the time to generate the sample points.
 fn price() {
     const SECONDS: f64 = 2.0;
     let scene = sized(&example("figure_9_9"), 640, Method::MultiJittered, 64);

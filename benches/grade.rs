@@ -89,10 +89,11 @@ fn main() {
     }
 }
 
-/// Returns sets of `count` mistakes that a renderer may make. For a `count` of 0, returns only the
-/// empty set; for 1, a set for each mistake. For 2, pairs each mistake of an object with one
-/// mistake each of the camera, the board, another object and the picture. For 3, combines each
-/// mistake of an object with one of the camera and one of another object.
+/// Returns sets of `count` mistakes that a renderer may make. For a `count` of 0, this is only the
+/// empty set; for 1, there is one set for each mistake. For 2, there are four sets for each mistake
+/// of an object: the second mistake is one of the camera, of the board, of another object, or of
+/// the whole picture. For 3, each mistake of an object is combined with one of the camera and one
+/// of another object.
 fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     let objects = OF_THE_OBJECTS.iter().enumerate();
     let sets = objects.flat_map(|(index, object)| {
@@ -112,9 +113,10 @@ fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     }
 }
 
-/// Returns the test pictures with sets of `count` mistakes, all of one size and sampling. A picture
-/// is left out if one of its mistakes is invisible. A mistake is invisible if the picture without
-/// it has nearly the same bytes: rounding alone can change a byte by one 8-bit step.
+/// Returns test pictures, all of the same size and sampling, each with a set of `count` mistakes. A
+/// picture is left out if one of its mistakes is invisible, i.e. if the picture without this
+/// mistake has nearly the same bytes: rounding alone can change a byte by one 8-bit step. A picture
+/// whose size was changed by its mistakes is left out, too.
 fn cases(
     count: usize,
     [width, height]: [u32; 2],
@@ -156,8 +158,8 @@ fn cases(
     sets.filter_map(|(scene, set)| seen(scene, set)).collect()
 }
 
-/// Runs `diff` on the pictures of `cases`, and prints a row of the table: how many answers name
-/// exactly the right mistakes.
+/// Runs `diff` on the pictures of `cases`. Prints how many answers name exactly the right mistakes,
+/// as a row of a Markdown table.
 fn judge(program: &str, of: &str, cases: &[Case]) {
     let folder = tempfile::tempdir().expect("a folder for pictures");
     let (mut right, mut time) = (0, Duration::ZERO);

@@ -82,8 +82,8 @@ fn main() {
     }
 }
 
-/// Parses a text with pest in parts of about 4096 bytes, as Pinhole's own parser does. Returns the
-/// number of items.
+/// Parses a text with pest, and returns the number of items. The text is divided into parts of
+/// about 4096 bytes, which are parsed one by one, as in Pinhole's own parser.
 fn chunks(text: &str) -> usize {
     const CHUNK: usize = 4096;
     let (mut at, mut items) = (0, 0);

@@ -84,10 +84,12 @@ pub fn half_byte(k: u8) -> f64 {
 /// 1/2, in 8-bit steps. `light` must be positive and not subnormal.
 fn is_below_half(light: f64, k: u8) -> bool {
     // Bound on the relative rounding error of `difference` below. The difference is computed in
-    // double-doubles (sums of two `f64`), which decide most cases. If integers decided all cases,
-    // they would take half the time of rendering a small picture. As multiples of the unit roundoff
-    // of a double-double, the relative errors are at most 4 for light^5, 11 for scale^12, 1 for the
-    // product of these, 11 for x^12, and 1 for the difference, in sum less than 32.
+    // double-doubles (sums of two `f64`), which decide most cases. If all cases were decided with
+    // integers, this would need half the time of rendering a small picture.
+    //
+    // In multiples of the unit roundoff of a double-double, the relative errors are at most 4 for
+    // light^5, 11 for scale^12, 1 for the product of these two powers, 11 for x^12, and 1 for the
+    // difference. The sum of these errors is 28, which is less than 32.
     const ERROR: f64 = 32.0 * Double::UNIT;
     let squared = |x: Double| x.times(&x);
     let power_12 = |x: Double| squared(squared(squared(x).times(&x)));

@@ -1,7 +1,7 @@
 //! Problems of a scene, and their output formats for people and for programs.
 //!
-//! In: [`Diagnostic`]s, which each stage makes where it finds a problem, with possible fixes. Out:
-//! the diagnostics in the order of the text, as reports for a terminal or as lines of JSON. The
+//! Each stage makes [`Diagnostic`]s, with possible fixes, where it finds a problem. They are sorted
+//! in the order of the text, and formatted as reports for a terminal or as lines of JSON. The
 //! caller decides where to print them, and in which style.
 
 #[cfg(feature = "fancy")]

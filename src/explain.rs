@@ -22,8 +22,8 @@ pub const LEFT_HANDED: &str = include_str!("../grammar/left_handed.md");
 
 /// Words that other programs use, and where Pinhole explains their meaning. The first text of a row
 /// is a list of such words, separated by commas. The second text is a word of the language or a
-/// heading of the language's reference. A heading may be followed by `: ` and the first words of an
-/// item or paragraph in its section.
+/// heading of the language's reference. If only one item or paragraph below the heading explains
+/// the words, the heading is followed by `: ` and the item's first words.
 const OTHER_NAMES: &[(&str, &str)] = &[
     ("loop, repeat, array, index, for loop", "repetition"),
     ("group, move, translate, scale", "limits: A group"),

@@ -212,7 +212,7 @@ fn rounded(x: &Big) -> f64 {
     x.to_finite() + 0.0
 }
 
-/// Totals of the objects after the first [`LISTED`]. The readable output does not list these
+/// Numbers about the objects after the first [`LISTED`]. The readable output does not list these
 /// objects one by one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Rest {
@@ -270,7 +270,7 @@ impl fmt::Display for Inspection {
 
 /// The readable output's text about the areas in which the objects are visible.
 impl Inspection {
-    /// Returns the totals of the objects after the first [`LISTED`], which are not listed one by
+    /// Returns numbers about the objects after the first [`LISTED`], which are not listed one by
     /// one. Returns `None` if there are no such objects.
     fn rest(&self) -> Option<Rest> {
         let rest = self.objects.get(LISTED..).filter(|rest| !rest.is_empty())?;

@@ -27,7 +27,8 @@ pub struct Probe {
     pub origin: DVec3,
     /// The ray's direction, of length 1.
     pub direction: DVec3,
-    /// All crossings in front of the eye, the nearest first, with their objects.
+    /// All surfaces that the ray hits in front of the eye, the nearest hit first, each with its
+    /// object.
     pub hits: Vec<(Hit, Object)>,
     /// The colour that is seen: of the nearest visible surface, or of the background.
     pub color: Color,

@@ -1,9 +1,9 @@
 //! Coarse pictures that become finer step by step, for a preview.
 //!
-//! In: the prepared scene. Out: pictures that consist of square blocks, each picture with smaller
-//! blocks than the one before. A block shows the colour at its centre, so that only colours of the
-//! scene are shown. The preview decides when to continue with the full picture (`render`), and when
-//! to stop because the scene has changed.
+//! Each picture of the prepared scene consists of square blocks, smaller ones than the picture
+//! before. A block shows the colour at its centre, so that only colours of the scene are shown. The
+//! preview decides when to continue with the full picture (`render`), and when to stop because the
+//! scene has changed.
 
 use std::sync::{Mutex, atomic::Ordering};
 

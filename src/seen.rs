@@ -1,9 +1,9 @@
-//! What is seen of each object of a scene.
+//! What is seen of each object of a scene: its rectangle in the picture and the area that shows it,
+//! or the reason why it is not seen.
 //!
-//! In: a scene. Out: for each object its rectangle in the picture and the area that shows it, or
-//! the reason why it is not seen. The areas are computed by exact integration. If this would take
-//! too much work, only the object at the centre of each pixel is determined, the whole pixel is
-//! added to this object's area, and the areas are reported as inexact.
+//! The areas are computed by exact integration. If this would take too much work, only the object
+//! at the centre of each pixel is determined, the whole pixel is added to this object's area, and
+//! the areas are reported as inexact.
 
 use std::{cell::OnceCell, collections::BTreeMap};
 

@@ -1,9 +1,9 @@
 //! Source texts and positions in them.
 //!
-//! In: bytes with a name. Out: a text, and the lines and columns of its offsets. A scene has one
-//! file and any number of `--set` arguments. A diagnostic may refer to each of them, so a [`Span`]
-//! contains the identifier of its source. Spans are byte ranges; lines and columns are computed
-//! only for output.
+//! A source is made from bytes and a name. It computes the lines and columns of offsets in its
+//! text, which are needed only for output; inside the program, positions are byte ranges,
+//! [`Span`]s. A scene has one file and any number of `--set` arguments. A diagnostic may refer to
+//! each of them, so a [`Span`] contains the identifier of its source.
 
 mod lines;
 

@@ -72,8 +72,8 @@ impl Threads {
 
     /// Returns the pool that was built. If building failed, for instance because too many threads
     /// are running, returns the current threads. If the calling thread does not belong to a pool,
-    /// returns a pool of the calling thread alone, because rayon would otherwise permanently treat
-    /// this thread as a pool of its own.
+    /// makes it the only thread of a new pool and returns this pool. rayon then keeps the thread in
+    /// this pool permanently.
     fn started(built: Result<ThreadPool, ThreadPoolBuildError>) -> Result<Self, NoThreads> {
         match built {
             Ok(pool) => Ok(Self::Started(pool)),

@@ -5,7 +5,7 @@ use pinhole::{
     source::{Source, Sources},
 };
 
-/// Returns the scene of figure 9.9 with the given size, method and number of samples.
+/// Returns the example scene `figure_9_9` with the given size, method and number of samples.
 pub fn figure(width: u32, height: u32, method: Method, count: Count) -> Scene {
     let text = include_str!("../../examples/figure_9_9.scn");
     let sources = Sources::new(Source::from_text("figure_9_9.scn", text));

@@ -81,8 +81,8 @@ pub fn spheres(count: usize, layout: Layout) -> String {
 }
 
 /// Returns the text of a scene of `count` spheres at distances from 5 to 50. The areas of their
-/// images add up to one and a half times the picture. So for any count, some spheres are visible,
-/// some are hidden, and more than a fifth of the picture stays empty.
+/// images add up to one and a half times the picture. Since the spheres lie at random places, about
+/// e^−1.5, i.e. more than a fifth, of the picture stays empty for any count.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 pub fn crowd(count: usize) -> String {
     const COVERED: f64 = 1.5;

@@ -85,7 +85,8 @@ fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<SceneIn
     Ok(input)
 }
 
-/// Returns sentences that tell the user how many fixes were not applied, and how to apply them.
+/// Returns sentences that tell the user how many fixes were not applied, why, and with which option
+/// they can be applied.
 fn held_back(name: &str, fixed: &Fixed, is_utf8: bool) -> String {
     let mut text = String::new();
     let fixes = |count, one, more| match count {

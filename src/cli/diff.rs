@@ -24,7 +24,9 @@ use crate::{
     numbers::{grouped, short, significant},
 };
 
-/// Compares the files of the arguments A and B. The status is [`Status::Done`] if they agree.
+/// Compares the files of the arguments A and B. If A is a picture and B a scene, the verdict on A
+/// decides the exit status, unless `--strict` or `--tolerance` is given. Otherwise, the status is
+/// [`Status::Done`] if all differences are within the tolerance.
 pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     if is_standard(&args.a) && is_standard(&args.b) {
         let message = "standard input can be read once only, and `-` is given twice";
@@ -217,10 +219,10 @@ struct DiffReport {
     comparison: Result<Comparison, SizesDiffer>,
     tolerance: f64,
     /// Verdict on picture A: whether it is right and, if not, which mistakes explain the
-    /// differences. `None` if B is not a scene.
+    /// differences. `None` unless A is a picture and B a scene.
     verdict: Option<Verdict>,
-    /// Whether the tolerance alone decides the exit status. Otherwise the verdict decides, if there
-    /// is one.
+    /// Whether the tolerance decides the exit status, not the verdict. It is `true` if there is no
+    /// verdict.
     is_strict: bool,
 }
 
@@ -343,8 +345,8 @@ pub fn json([a, b]: [String; 2], figures: Map<String, Value>) -> Map<String, Val
     names.into_iter().chain(figures).collect()
 }
 
-/// Writes each mistake and each guess of a verdict. Then writes which objects of the scene are
-/// right.
+/// Writes each mistake that the verdict names, and each that it only guesses. Then lists which
+/// objects of the scene are drawn right.
 fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
     let named = verdict.mistakes.iter().map(|mistake| ("mistake", mistake));
     let guessed = verdict.guesses.iter().map(|guess| ("guess  ", guess));
@@ -382,7 +384,8 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
 }
 
 /// Lists the scene's objects, and says which of them are drawn right. If the scene has more than 12
-/// objects, lists at most 12 wrong ones, and only counts the others.
+/// objects, names at most 12 wrong ones. Further wrong objects and all right ones are then only
+/// counted.
 fn objects(verdict: &Verdict) -> String {
     /// Maximum number of objects that are listed. If the scene has more, objects that are right are
     /// only counted. Chosen so that the list takes a few lines; any similar number works.

@@ -18,8 +18,10 @@ use crate::{
 };
 
 /// Tolerance between the exact pictures of two scenes, in steps of 8-bit sRGB. It must exceed the
-/// errors of both pictures: each is usually at most 10^−9 in linear light, which is 3.3·10^−6
-/// steps. A larger tolerance would hide small differences between the scenes.
+/// errors of both pictures together. Each error is usually at most 10^−9 in linear light. The sRGB
+/// curve is steepest near black, where one unit of linear light becomes 255·12.92 steps, so this
+/// error is at most 3.3·10^−6 steps. A larger tolerance would hide small differences between the
+/// scenes.
 pub const EXACT_STEPS: f64 = 1e-4;
 
 /// Returns whether a path has the extension of scenes, `.scn`.

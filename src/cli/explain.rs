@@ -49,7 +49,8 @@ enum Headings {
 }
 
 impl Headings {
-    /// Returns bold headings if the terminal shows colours, because it then shows bold text, too.
+    /// Returns bold headings if the terminal shows colours, since such a terminal also shows bold
+    /// text.
     fn of(style: Style) -> Self {
         if style.color { Self::Bold } else { Self::Plain }
     }
@@ -174,7 +175,7 @@ fn drawn(page: &str, width: usize, headings: Headings) -> String {
     let mut rows: Vec<Vec<&str>> = Vec::new();
     let lines = page.lines().filter(|line| !line.starts_with("!["));
     let lines = lines.map(without_targets).collect::<Vec<_>>();
-    // An empty line is added, so that the last paragraph is closed, too.
+    // An empty line ends a paragraph, so one is added after the last paragraph.
     for line in lines.iter().map(String::as_str).chain([""]) {
         if !is_scene && line.starts_with('|') {
             rows.push(cells(line));
@@ -361,8 +362,8 @@ mod tests {
             let page = page(method).unwrap();
             assert!(page.matches("\n\n").count() == 3, "{page}");
         }
-        // A name that another program uses for a word of the language has the same page as that
-        // word.
+        // Another program may use a different name for a word of the language. This name has the
+        // same page as the word.
         for (name, meant) in explain::other_names() {
             match meant.split_once(": ") {
                 None => assert_eq!(page(name).unwrap(), page(meant).unwrap(), "{name}"),
@@ -377,7 +378,7 @@ mod tests {
                 }
             }
         }
-        // A word of several parts may be written in three ways.
+        // A word that consists of several parts may be written with spaces, underscores or hyphens.
         for parts in [
             "vanishing point",
             "field of view",

@@ -1,4 +1,4 @@
-//! The files of a sweep's pictures: their names, and which of them were rendered before.
+//! The picture files of `--sweep`: their names, and which of them were rendered by an earlier run.
 
 use std::{
     io::{BufReader, Read},
@@ -20,7 +20,7 @@ use crate::{
 /// pictures, so more digits would only be zeros.
 const MOST_DIGITS: usize = 9;
 
-/// A path with the number of a picture in it, such as `roll-%03d.png`.
+/// Pattern of the paths of numbered pictures, such as `roll-%03d.png`.
 pub struct FramePattern {
     before: String,
     after: String,
@@ -82,9 +82,9 @@ impl FramePattern {
     }
 }
 
-/// Returns whether the output's file is a picture of this recipe: a PNG that stores the same scene,
-/// overrides and part, or an EXR file with the recipe's digest and part. Returns `false` if the
-/// file cannot be read.
+/// Returns whether the output's file already contains the picture of `recipe`. A PNG must store the
+/// same scene, overrides and crop. An EXR file must store the recipe's digest and crop. Returns
+/// `false` if the file cannot be read.
 pub fn is_rendered(output: &PictureOutput, recipe: &Recipe) -> bool {
     let stored = || {
         let PictureOutput::File(path, format, _) = output else {

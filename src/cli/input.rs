@@ -33,15 +33,15 @@ const SCENE_LIMIT: u64 = 256 << 20;
 /// that other programs insert before the pixels.
 pub const PICTURE_LIMIT: u64 = 8 << 20;
 
-/// Number of bytes at the start of a file that are searched for a picture, 64 KiB. A program may
-/// print messages before its picture; if they are longer than 64 KiB, the picture is not found.
-/// Usual messages are far shorter.
+/// Number of bytes at the start of a file that are searched for a picture, 64 KiB. A student's
+/// program may print messages before it prints its picture, and both may be saved in one file. If
+/// they are longer than 64 KiB, the picture is not found; usual messages are far shorter.
 const START: u64 = 1 << 16;
 
 /// A scene that was read, but not yet parsed.
 pub struct SceneInput {
-    /// The scene's text and its overrides, i.e. `--set` arguments: first those that are stored in a
-    /// picture, then those on the command line.
+    /// The scene's text and its overrides (`--set` arguments). Overrides that are stored in a
+    /// picture come before those on the command line.
     pub sources: Sources,
     /// Whether the scene was read from a PNG in which Pinhole stored it.
     pub is_picture: bool,
@@ -74,8 +74,9 @@ impl SceneInput {
         Self::of_bytes(path, bytes, overrides)
     }
 
-    /// Reads a scene's text for the command `command`, which will change it. Also returns the file
-    /// as it was read, or `None` for standard input. Fails for pipes.
+    /// Reads the text of a scene that the command `command` will change. Also returns the file as
+    /// it was read, or `None` if the scene comes from standard input. Fails if `path` is a named
+    /// pipe.
     pub fn to_change(
         path: &Path,
         overrides: &Overrides,
@@ -133,8 +134,9 @@ impl SceneInput {
     }
 
     fn add(&mut self, overrides: &Overrides) {
-        // Overrides are numbered as on the command line. Overrides that are stored in a picture
-        // have no number there, so they are skipped.
+        // Names each source by the position of the `--set` argument on the command line.
+        // `overrides` contains only these arguments, so the numbers begin with 1 even if the list
+        // `sources.sets` already contains overrides that are stored in a picture.
         let sets = (1..).zip(&overrides.sets);
         let sets = sets.map(|(number, set)| Source::from_text(format!("--set #{number}"), set));
         self.sources.sets.extend(sets);

@@ -21,9 +21,9 @@ pub fn picture(bytes: &[u8], large: &LargeArgs) -> Result<Picture, String> {
     })
 }
 
-/// Returns the area of the scene that a picture shows: the crop that the picture's file contains,
-/// or the crop `named` on the command line, or the whole scene. A crop whose size differs from the
-/// picture's is ignored.
+/// Returns the area of the scene that a picture shows. If the picture's file contains a crop, this
+/// is the crop. Otherwise, it is the crop `named` on the command line or, if there is none, the
+/// whole scene. A crop whose size differs from the picture's is ignored.
 ///
 /// # Errors
 ///
@@ -50,7 +50,8 @@ pub fn part(picture: &Picture, scene: &Scene, named: Option<Area>) -> Result<Are
     }
 }
 
-/// Returns advice for a picture whose size differs from the scene's.
+/// Returns advice on how to compare a picture whose size differs from the scene's. Returns an empty
+/// text if there is no advice.
 fn way_out([width, height]: [u32; 2], whole: Area) -> String {
     let [w, h] = [whole.width, whole.height];
     let is_scaled = u64::from(width) * u64::from(h) == u64::from(height) * u64::from(w);

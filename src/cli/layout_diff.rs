@@ -1,9 +1,9 @@
 //! The unified diff between a scene's text and the formatted text. Its time and memory are linear
 //! in the length of the texts.
 //!
-//! Formatting changes only white space. Therefore, two lines can correspond only if equally many
-//! other characters precede them. One pass over both texts finds all unchanged lines, so that no
-//! general diff algorithm is needed.
+//! Formatting changes only white space. Therefore, lines of the two texts can correspond only if
+//! the same number of characters, not counting white space, precedes them. One pass over both texts
+//! finds all unchanged lines, so that no general diff algorithm is needed.
 
 use super::{
     output,
@@ -70,8 +70,8 @@ impl<'t> LineCursor<'t> {
         self.solid_before += line.chars().filter(|c| !c.is_whitespace()).count();
     }
 
-    /// Returns whether the next lines of both texts are equal and at corresponding places, or both
-    /// texts are at their ends.
+    /// Returns whether the next lines of both texts are equal, with the same number of characters
+    /// before them, not counting white space. Also returns `true` if both texts are at their ends.
     fn is_same(&self, other: &Self) -> bool {
         match (self.line(), other.line()) {
             (None, None) => true,
@@ -94,9 +94,10 @@ fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
             let (old, new) = (before.line(), after.line());
             let [mut is_removed, mut is_added] = [old.is_some(), new.is_some()];
             if let (Some(old), Some(new)) = (old, new) {
-                // Advances the text that has fewer characters before its next line, not counting
-                // white space. If the numbers are equal, advances the text whose next line is
-                // empty. If both next lines are empty, or neither is, advances both texts.
+                // Makes one step towards the next lines that may correspond: passes a line of the
+                // text that has fewer characters, not counting white space, before this line. If
+                // the numbers are equal, passes the line that is empty, since formatting adds and
+                // removes empty lines. If both lines are empty, or neither is, passes both.
                 let is_empty = |line: &str| line.trim().is_empty();
                 let [old, new] = [
                     (before.solid_before, !is_empty(old)),

@@ -22,10 +22,10 @@ use crate::{
 };
 
 /// Number of rows that are combined at a time. With more rows, a wide picture would need more
-/// memory; with fewer, the bands would be allocated and written more often.
+/// memory; with fewer, memory would be allocated, and rows would be written, more often.
 const ROWS: u32 = 64;
 
-/// The file of a part.
+/// A file that contains a part of the picture.
 struct PartFile {
     path: PathBuf,
     format: FileFormat,
@@ -118,8 +118,8 @@ impl PartFile {
         file.rewind()?;
         let place = film::read_exr_place(BufReader::new(file))
             .map_err(|_| io::Error::other("it is neither a PNG nor an EXR file of a part"))?;
-        // A file that shows the whole picture is accepted, too: it is the only shard of one
-        // (`--shard 1/1`). Without a digest, however, the file is not from Pinhole.
+        // A file that shows the whole picture is accepted, too: `--shard 1/1` writes such a file.
+        // Without a digest, however, the file is not from Pinhole.
         let Some(digest) = place.digest else {
             let message = "it is no part of a picture that Pinhole rendered";
             return Err(io::Error::other(message));
@@ -242,7 +242,8 @@ fn gap(parts: &[PartFile], whole: Area) -> Option<Area> {
     })
 }
 
-/// Opens the rows of a file, which has the given width in pixels.
+/// Function that opens a file to read its rows. Its second argument is the width of the file's
+/// picture in pixels.
 type OpenRows<P> = fn(BufReader<File>, u32) -> io::Result<FileRows<P>>;
 
 /// The rows of the whole picture, read from the files of its parts. A part's file is open only
@@ -251,9 +252,9 @@ struct MergedRows<'a, P> {
     parts: &'a [PartFile],
     whole: Area,
     open_rows: OpenRows<P>,
-    /// Index of the first part that was not opened yet.
+    /// Index of the first part whose file has not been opened yet.
     next: usize,
-    /// Parts with rows that were not read yet.
+    /// Open files of parts, of which some rows have not been read yet.
     open: Vec<(&'a PartFile, FileRows<P>)>,
     /// Index of the next row.
     y: u32,

@@ -66,7 +66,8 @@ pub fn run() -> ExitCode {
 }
 
 /// Parses the arguments, the first of which is the program's name, and runs the command that they
-/// name. Returns its exit status. A host that handles signals itself reports them to `interrupt`.
+/// name. Returns its exit status. A caller that handles signals itself, such as the Python package,
+/// reports them to `interrupt`.
 pub fn run_with(args: impl IntoIterator<Item = OsString>, interrupt: &Interrupt) -> u8 {
     let args: Vec<OsString> = args.into_iter().collect();
     let status = match Args::try_parse_from(&args) {

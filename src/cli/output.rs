@@ -103,8 +103,8 @@ pub fn answer(text: &str) -> Result<(), Trouble> {
 }
 
 /// Wraps lines longer than `width` columns between words. If a line seems to be the row of a table,
-/// its continuation lines are indented to the row's last column, unless this column starts in the
-/// right half.
+/// its continuation lines are indented to the row's last column. Columns that start in the right
+/// half of the width are ignored, so that each line has room for words.
 pub fn wrapped(text: &str, width: usize) -> String {
     let broken = text.split('\n').map(|line| {
         let words = line.trim_start_matches(' ');
@@ -121,9 +121,9 @@ pub fn wrapped(text: &str, width: usize) -> String {
     broken.collect::<Vec<_>>().join("\n")
 }
 
-/// Returns the offset at which the last column of a table's row starts. A column starts after at
-/// least two spaces, and at `most` letters or less from the start of the row. If there is no such
-/// column, returns 2, or `most` if `most` is less than 2.
+/// Returns where the last column of a table's row starts, as a number of characters. Only columns
+/// that start at `most` or before it are considered. Columns are separated by at least two spaces.
+/// Without such a column, returns an ordinary indentation of 2, or `most` if `most` is less.
 fn last_column(line: &str, most: usize) -> usize {
     let letters: Vec<char> = line.chars().take(most + 1).collect();
     let starts = letters.windows(3).enumerate();
@@ -186,8 +186,8 @@ pub fn style() -> Style {
     }
 }
 
-/// Number of columns of the terminal in which a report shows line numbers and a frame, at the left
-/// of the scene's lines. The scene's lines get the remaining columns. With a smaller number, the
+/// Number of terminal columns that a report needs, to the left of the scene's text, for line
+/// numbers and a frame. The scene's text gets the remaining columns. With a smaller number, the
 /// terminal would wrap long lines.
 const FRAME: usize = 8;
 
@@ -204,9 +204,9 @@ pub fn page_style() -> Option<Style> {
     })
 }
 
-/// Returns whether colours may be written to a terminal, as <https://no-color.org> and
-/// <https://bixense.com/clicolors> define it. In addition, the terminals `vt100` and similar, made
-/// by DEC, count as terminals without colours.
+/// Returns whether colours may be written to a terminal, according to <https://no-color.org> and
+/// <https://bixense.com/clicolors>. Returns `false`, too, for `vt100` and other terminals by DEC,
+/// which have no colours.
 pub fn has_color() -> bool {
     let is = |name, value| env::var_os(name).is_some_and(|found| found == value);
     let is_of_dec = |name: &str| match name.strip_prefix("vt") {

@@ -75,15 +75,17 @@ pub struct Certificate {
     pixels: u64,
     /// Number of pixels whose rounded values are proven right.
     certain: u64,
-    /// Number of pixels whose bound exceeds [`VAGUE`].
+    /// Number of pixels whose error bound exceeds [`VAGUE`].
     vague: u64,
-    /// Greatest bound of a pixel's mean, with the pixel's column and row in the whole picture.
+    /// Greatest error bound of a pixel's mean, in linear light, with the pixel's column and row in
+    /// the whole picture.
     worst: Option<(f32, [u32; 2])>,
 }
 
 impl Certificate {
-    /// Adds a part of the picture. Parts that were rendered with samples are ignored. `certain` is
-    /// the number of pixels whose rounded values are proven right.
+    /// Adds the error bounds of a part of the picture, `rendered`, to the certificate. Does nothing
+    /// if the part was rendered with samples. `certain` returns the number of the part's pixels
+    /// whose rounded values are proven right.
     fn add<P>(&mut self, rendered: &Rendered<P>, area: Area, certain: impl Fn(&Exact<P>) -> u64) {
         let Rendered::Exact(exact) = rendered else {
             return;
@@ -208,8 +210,8 @@ impl PictureOutput {
     }
 
     /// Renders the area `part` of a scene's picture and writes it, band by band. Returns a note for
-    /// the user about the accuracy of an exact picture, which is empty for a sampled one. Shows a
-    /// progress bar if standard error is a terminal. Fails if `cancel` is set.
+    /// the user about the accuracy of an exact picture, or an empty text for a sampled picture.
+    /// Shows a progress bar if standard error is a terminal. Fails if `cancel` is set.
     pub fn render(
         &self,
         scene: &Scene,
@@ -255,8 +257,9 @@ impl PictureOutput {
                 certificate.add(&rendered, area, |exact| exact.certain);
                 Ok::<_, RenderError>(rendered.into_film())
             });
-            // The first band is rendered before the file is opened, so that usual pictures leave no
-            // temporary file if this process is killed while it renders.
+            // The first band is rendered before the file is opened. If it is the only band, as in
+            // all but very large pictures, no temporary file is left if this process is killed
+            // while it renders.
             let first = rendered.next();
             let mut all = first.into_iter().chain(rendered).map(|band| {
                 band.map_err(|error| {

@@ -43,8 +43,9 @@ pub fn watched<T>(total: u64, work: impl FnOnce(&AtomicU64) -> T) -> T {
     })
 }
 
-/// Runs `work`, which renders `total` samples, or pixels if it takes no samples. It stops when
-/// `cancel` is set. Meanwhile, a bar shows the progress, if standard error is a terminal.
+/// Runs `work`, which renders `total` samples, or `total` pixels if it renders without samples. The
+/// work stops when `cancel` is set. Meanwhile, a bar shows the progress, if standard error is a
+/// terminal.
 pub fn rendering<T>(
     total: u64,
     threads: Option<NonZero<usize>>,

@@ -1,4 +1,5 @@
-//! `render`: renders a scene to a picture file, or to a file for each scene of a sweep.
+//! `render`: renders a scene to a picture file. With `--sweep`, renders several variants of the
+//! scene to a file each.
 
 use std::time::Instant;
 

@@ -20,8 +20,8 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     super::speed::run(args, interrupt)
 }
 
-/// Tests the arithmetic of the renderer in hard cases and prints the numbers of wrong decisions.
-/// After Ctrl-C, only the inputs tested so far are counted.
+/// Tests the arithmetic of the renderer in hard cases, and prints how often it gave a wrong answer,
+/// such as a wrong visible object. After Ctrl-C, only the inputs tested so far are counted.
 fn numerics(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let cancel = interrupt.watch();
     let inputs = args.inputs.unwrap_or(INPUTS);

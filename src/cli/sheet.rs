@@ -217,8 +217,8 @@ fn sheet(
 }
 
 /// Shortens a caption to `width` pixels. In the caption `target=value` of a sweep, the target is
-/// removed first, since it is the same everywhere. If that does not suffice, the start of the value
-/// is removed.
+/// removed first, since all captions of the sweep have the same one. If that does not suffice, the
+/// start of the value is removed.
 fn fitting(name: &str, width: u32) -> String {
     let most = width as usize / get_raster_width(REGULAR, LETTERS);
     if name.chars().count() <= most {

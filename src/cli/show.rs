@@ -15,7 +15,7 @@ use terminal_size::{Height, Width, terminal_size_of};
 use super::{Trouble, output, trouble};
 use crate::{area::Area, color::linear_to_srgb, film::Film};
 
-/// The terminal to which `watch` writes, by standard error.
+/// The terminal, reached through standard error, in which `watch` shows pictures and messages.
 pub struct Screen {
     /// The picture above the messages; `None` if only messages are shown.
     shown: Option<ShownPicture>,
@@ -57,8 +57,8 @@ impl Screen {
                 "`--show` draws in colours, and the terminal has none, by `TERM`, `NO_COLOR` or `CLICOLOR`",
             ));
         }
-        // The picture is drawn from the top of the screen. What was there is scrolled up first, so
-        // that the user can still scroll back to it.
+        // The picture is drawn from the top of the screen. The earlier content of the screen is
+        // scrolled up first, so that the user can still scroll back to it.
         output::to_people(&format!("{}\x1b[H", "\n".repeat(size().1)));
         Ok(Self {
             shown: Some(ShownPicture::default()),
@@ -78,8 +78,8 @@ impl Screen {
         output::to_people(text);
     }
 
-    /// Returns the size of the squares, in pixels of the picture `whole`, that are each shown as
-    /// one dot, i.e. half a character cell. Returns `None` if no pictures are shown.
+    /// Returns how many pixels of the picture `whole`, in each direction, are shown as one dot,
+    /// rounded down. A dot is half a character cell. Returns `None` if no pictures are shown.
     pub fn side(&self, whole: Area) -> Option<u32> {
         self.shown.as_ref()?;
         let (columns, rows) = size();
@@ -112,8 +112,8 @@ impl Screen {
 
     fn refresh(&self) {
         if let Some(ShownPicture { drawn, .. }) = &self.shown {
-            // The picture is drawn over the old one without clearing the screen, which would
-            // flicker.
+            // The picture is drawn over the old one. If the screen were cleared first, the picture
+            // would flicker.
             output::to_people(&format!("\x1b[H{drawn}\x1b[J{}", self.messages));
         }
     }
@@ -167,8 +167,8 @@ fn size() -> (usize, usize) {
     (columns.max(1), rows_of_picture(rows))
 }
 
-/// Returns how many of the terminal's rows the picture may take. About 12 rows are left for
-/// messages, since a report on one mistake takes about eleven.
+/// Returns how many of the terminal's rows may show the picture. About 12 rows are left for
+/// messages, since the report of a problem is about eleven rows long.
 fn rows_of_picture(rows: usize) -> usize {
     const MESSAGES: usize = 12;
     let rest = rows.saturating_sub(MESSAGES);

@@ -135,8 +135,8 @@ fn request(args: &ReportArgs) -> Request {
     }
 }
 
-/// Returns the errors for which the report says how many samples and how much time they need:
-/// 1/256, then those that the user asked for, without duplicates.
+/// Returns the errors for which the report estimates the necessary samples and time: 1/256, and
+/// then the errors that the user asked for, without duplicates.
 fn errors(asked: &[f64]) -> Vec<f64> {
     let mut errors = vec![1.0 / 256.0];
     for &error in asked {
@@ -147,7 +147,7 @@ fn errors(asked: &[f64]) -> Vec<f64> {
     errors
 }
 
-/// Rejects `--samples` if no chosen method takes samples.
+/// Rejects `--samples` if the exact method, which uses no samples, is the only chosen method.
 fn check_methods(request: &Request) -> Result<(), Trouble> {
     let is_exact = |method: &Method| *method == Method::Exact;
     if !request.samples.is_empty() && request.methods.iter().all(is_exact) {

@@ -26,7 +26,7 @@ pub struct Sweep {
 
 /// One scene of a sweep.
 pub struct SweepStep {
-    /// The `--set` argument, with the exact value.
+    /// The `--set` argument, with the exact value of the target.
     pub set: String,
     /// The `--set` argument with its value rounded to few digits, for the scene's caption.
     pub label: String,

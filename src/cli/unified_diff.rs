@@ -1,7 +1,5 @@
-//! Unified diffs, in the format that `patch` reads.
-//!
-//! In: a text before and after changes. Out: the lines that differ, with three unchanged lines
-//! around them.
+//! Unified diffs, in the format that `patch` reads. A unified diff of two texts contains the lines
+//! that differ, with three unchanged lines around them.
 
 use std::ops::Range;
 
@@ -11,7 +9,8 @@ const AROUND: usize = 3;
 
 /// Maximum number of lines, in both texts together, that are skipped after a difference to find the
 /// place where the texts agree again. If no such place is found, all remaining lines are reported
-/// as changed. The time grows with the square of the limit, since all pairs of places are tried.
+/// as changed. The time grows with the square of the limit, since every pair of a place in one text
+/// and a place in the other may be tried.
 const MOST_STEPS: usize = 1000;
 
 /// A change: lines of the old text, by their indices, and the lines of the new text that replace
@@ -37,9 +36,10 @@ pub fn lines(text: &str) -> Vec<&str> {
     text.split_inclusive('\n').collect()
 }
 
-/// Writes changes in the unified diff format, each group below a line `@@ … @@` with its position.
-/// The function `shown` formats a line from its first character in the diff (space, `-` or `+`) and
-/// its text without line feed.
+/// Writes changes in the unified diff format. Changes that are close to each other form a group,
+/// which begins with a line `@@ … @@` that gives its position. The function `shown` formats a line,
+/// given the character that precedes it in the diff (space, `-` or `+`) and its text without line
+/// feed.
 pub fn hunks(
     changes: &[ReplacedLines],
     old: &[&str],
@@ -89,9 +89,9 @@ fn place(lines: &Range<usize>) -> String {
     }
 }
 
-/// Returns the changes from `old` to `new`. After a difference, both texts are searched for the
-/// nearest place from which the next two lines agree. There may be more changes than necessary, but
-/// they are always correct.
+/// Returns the changes from `old` to `new`. After a difference, finds the nearest pair of
+/// positions, one in each text, whose next two lines are equal. There may be more changes than
+/// necessary, but applying them always yields `new`.
 fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
     let (mut a, mut b, mut changes) = (0, 0, Vec::new());
     while a < old.len() || b < new.len() {

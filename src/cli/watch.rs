@@ -113,7 +113,8 @@ fn check_text(scene: &Path, bytes: &[u8]) -> Result<(), Trouble> {
 }
 
 /// Renders the scene with the text `bytes` and writes its picture. Returns the time when it was
-/// written. The work is interrupted when `is_stale` is set, since there is then a newer text.
+/// written. When `is_stale` is set, there is a newer text, so the work stops with the error
+/// [`Trouble::Interrupted`].
 fn render_and_write(
     args: &WatchArgs,
     bytes: Vec<u8>,
@@ -154,7 +155,7 @@ fn render_and_write(
     Ok(done)
 }
 
-/// Time after which a render that is not finished yet is accompanied by coarse pictures. A faster
+/// Time after which coarse pictures are shown until the finished picture is rendered. A faster
 /// render needs none. The value is a guess at when a user gets impatient.
 const PATIENCE: Duration = Duration::from_millis(200);
 

@@ -13,8 +13,8 @@ use crate::source::{Source, SourceId, Sources, Span};
 /// Excerpt of a source: its labelled lines. Long lines are cut to the parts around the labels.
 ///
 /// miette, the library that draws reports, receives the excerpt instead of the text, so a line of
-/// ten megabytes is neither printed nor scanned. Every label lies within the excerpt. (miette omits
-/// a label at the end of a text, and panics at a label beyond it.)
+/// ten megabytes is neither printed nor scanned. Every label ends before the end of the excerpt,
+/// since miette omits a label at the end of a text, and panics at a label beyond it.
 #[derive(Debug)]
 pub struct Excerpt<'s> {
     source: &'s Source,
@@ -52,8 +52,8 @@ const HOOK_COLUMNS: usize = 4;
 /// so far to the right that less room is left. A narrower message would be hard to read. With a
 /// larger minimum, more lines of the scene would be cut to make room for messages.
 const MIN_MESSAGE_COLUMNS: usize = 16;
-/// Maximum number of lines of a label that is drawn whole. A longer label is drawn only in its
-/// first line. With a much larger maximum, a label of a long block could fill the screen.
+/// Maximum number of lines of a label that is drawn whole. Of a longer label, only the first line
+/// is drawn. With a much larger maximum, a label of a long block could fill the screen.
 const MAX_LABEL_LINES: usize = 6;
 
 /// Returns one excerpt for each source (the file or a `--set` argument) that contains labels of the
@@ -126,8 +126,9 @@ impl<'s> Excerpt<'s> {
         if number == 1 {
             range.start = self.source.bom_len().min(range.end);
         }
-        // miette draws labels on consecutive lines in one frame, and counts line numbers from the
-        // first line. An empty line therefore separates lines that are not consecutive.
+        // miette draws labels on consecutive lines in one frame. It is told only the number of the
+        // first line, and counts on from there. Lines that are not consecutive in the source are
+        // therefore separated by an empty line.
         let apart = self.lines.last().is_some_and(|l| l.number + 1 < number);
         if apart {
             self.text.push('\n');
@@ -149,7 +150,7 @@ impl<'s> Excerpt<'s> {
         if shown.last().is_some_and(|(end, _)| *end < range.end) {
             self.text.push('…');
         }
-        // A label at the end of the line is drawn under this space.
+        // Each line ends with a space, under which a label at the end of the line is drawn.
         self.text.push(' ');
         self.lines.push(ExcerptLine {
             number,
@@ -193,7 +194,8 @@ impl SourceCode for Excerpt<'_> {
         ) else {
             return Err(MietteError::OutOfBounds);
         };
-        // An error for lines that are not consecutive makes miette draw them in separate frames.
+        // If this function returns an error, miette draws the labels in separate frames. Therefore,
+        // it fails for lines that are not consecutive.
         if last.number - first.number != last_index - first_index {
             return Err(MietteError::OutOfBounds);
         }
@@ -213,8 +215,9 @@ impl SourceCode for Excerpt<'_> {
     }
 }
 
-/// Returns the part of a label's span that is drawn: only the first line if it has too many lines,
-/// and at most half of `columns` if its line is long.
+/// Returns the part of a label's span that is drawn. For a label with too many lines, this is only
+/// the first line. If the label lies within one line of more than `columns` bytes, it is at most
+/// the first `columns`/2 bytes of the label.
 fn shorten(span: Span, source: &Source, columns: usize) -> Span {
     let mut span = source.clamped(span);
     let first = source.line(span.start);

@@ -123,8 +123,8 @@ impl Fix {
         Self::new(format!("write `{text}`"), [Edit::new(span, text)])
     }
 
-    /// Makes the fix that removes the text at `span` as [`Edit::remove`] does, i.e. with white
-    /// space on one side.
+    /// Makes the fix that removes the text at `span`. As with [`Edit::remove`], adjacent white
+    /// space or the whole line is removed, too.
     pub fn remove(title: impl Into<String>, span: Span, sources: &Sources) -> Self {
         Self::new(title, [Edit::remove(span, sources)])
     }

@@ -1,7 +1,8 @@
 //! Collects the problems that one stage of reading a scene finds, up to a maximum number.
 //!
 //! The number is limited because a megabyte of punctuation may contain a million mistakes. A report
-//! needs about a thousand times the memory of the text it refers to, and nobody reads a million.
+//! needs about a thousand times the memory of the text it refers to, and nobody reads a million
+//! reports.
 
 use std::ops::{Deref, DerefMut};
 
@@ -40,9 +41,8 @@ impl Problems {
         }
     }
 
-    /// Adds a problem that was found only after problems further on in the text. Unlike
-    /// [`Self::push`], adds it even if another problem was omitted before, as long as fewer than
-    /// [`MOST_PROBLEMS`] are stored.
+    /// Adds a problem whose place in the text is before those of problems that were found earlier.
+    /// It is added even if one of those was omitted, unless [`MOST_PROBLEMS`] problems are stored.
     pub fn push_earlier(&mut self, problem: Diagnostic) {
         if self.kept.len() < MOST_PROBLEMS {
             self.kept.push(problem);

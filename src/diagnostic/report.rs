@@ -1,7 +1,7 @@
-//! Formats diagnostics for people.
+//! Formats diagnostics for people, as text for a terminal.
 //!
-//! In: diagnostics and the texts that they refer to. Out: text for a terminal, drawn by miette or
-//! written as sentences. miette receives only the labelled lines, cut to the parts that are shown.
+//! The text is drawn by miette or consists of sentences. miette receives only the labelled lines,
+//! cut to the parts that are shown.
 
 use std::{cmp::Reverse, collections::BTreeMap, fmt::Write};
 

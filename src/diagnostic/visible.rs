@@ -1,8 +1,8 @@
 //! Escapes text so that it is safe to print to a terminal.
 //!
-//! In: text from a scene, a file name, a picture or an argument. Out: the text, with some
-//! characters escaped: those that could control a terminal, change the order of the printed text,
-//! or be invisible. These are the control characters and those that Unicode calls ignorable.
+//! The text may come from a scene, a file name, a picture or an argument. Characters are escaped if
+//! they could control a terminal, change the order of the printed text, or be invisible. These are
+//! the control characters and those that Unicode calls ignorable.
 
 use std::{borrow::Cow, fmt::Write};
 
@@ -38,8 +38,7 @@ pub fn visible_line(text: &str) -> Cow<'_, str> {
     Cow::Owned(line)
 }
 
-/// Returns the text as [`visible_line`] does, and also escaped for HTML and XML, including
-/// attributes.
+/// Escapes a text as [`visible_line`] does, and in addition for HTML and XML, including attributes.
 pub fn escaped(text: &str) -> String {
     visible_line(text)
         .replace('&', "&amp;")

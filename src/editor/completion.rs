@@ -290,7 +290,7 @@ fn written_out(analysis: &Analysis<'_>, situation: &Situation) -> Option<Complet
 
 /// Returns completions for the `for` indices of the current block and for the definitions before
 /// the typed word. If `is_color` is `Some(true)`, only colours are offered. If it is `Some(false)`,
-/// colours are left out.
+/// colours are left out. If it is `None`, all are offered.
 fn definitions(
     analysis: &Analysis<'_>,
     situation: &Situation,

@@ -69,7 +69,8 @@ pub fn situation(analysis: &Analysis<'_>, at: usize) -> Option<Situation> {
 }
 
 /// Finds the innermost function call around the offset `at`. Returns the span of the function's
-/// name, and the index of the argument at the offset.
+/// name, and the index of the argument at the offset. Returns `None` if no argument of a call is at
+/// the offset.
 pub fn call(analysis: &Analysis<'_>, at: usize) -> Option<(Span, usize)> {
     let word = touched(analysis, at, |token| is_part(analysis, token))?;
     with_cursor(analysis, word, |path| {

@@ -186,7 +186,8 @@ pub(super) fn about_index(analysis: &Analysis<'_>, index: &Index<'_>) -> String 
 
 /// Returns the index in `path.values` of the value that the hover describes. Usually this is the
 /// last value, i.e. the innermost one. If that is a number, a list or a negation within an
-/// operation or a call, the hover describes the innermost such operation or call instead.
+/// operation or a call, the hover describes the innermost such operation or call instead. Returns
+/// `None` if `path` contains no value.
 fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
     use ValueKind::{Call, Chain, Negation, Number, Parentheses, Tuple};
     let (value, around) = path.values.split_last()?;

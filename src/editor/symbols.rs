@@ -15,9 +15,9 @@ use crate::{
 pub struct Symbol {
     /// Name of the definition, field or object. A block without a name is listed under its keyword.
     pub name: String,
-    /// Text shown beside the name. For a definition or field, it is the value. For a block with a
-    /// name, it is the keyword. If the block is repeated, the repetition follows, such as
-    /// `for i < 3`.
+    /// Text shown beside the name. For a definition or field, it is the value. For a block, it is
+    /// the keyword, unless the entry is listed under the keyword already. If the block is repeated,
+    /// the repetition follows, such as `for i < 3`.
     pub detail: String,
     /// Whether the entry is a definition, a setting, an object or a field.
     pub kind: SymbolKind,

@@ -3,8 +3,8 @@
 //!
 //! In: the lines that pass through the sub-pixel. Out: the cells, each with a point inside, added
 //! to [`Regions`]. The sub-pixel starts as one cell; each line in turn cuts the cells that it
-//! crosses. The error bound includes two terms: for each line, its position error times its length;
-//! for each cell whose colour is uncertain because the cell is too small or too thin, its area.
+//! crosses. The error bound includes the area whose colour is uncertain: a strip along each line,
+//! as wide as the line's position error, and each cell that is too small or too thin.
 
 use std::mem;
 

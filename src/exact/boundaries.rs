@@ -2,8 +2,8 @@
 //!
 //! In: a sub-pixel and its candidates, the objects that may be seen in it. Out: the lines and
 //! conics that may separate colours in it: silhouettes, intersections of surfaces, and
-//! intersections with the near and far planes. They are computed in double-double, and again in the
-//! highest precision if the double-double error is too large.
+//! intersections with the near and far planes. They are computed in double-double. If the error is
+//! then too large, they are computed again in the highest precision ([`Big`]).
 
 use std::{cell::OnceCell, ops::ControlFlow};
 

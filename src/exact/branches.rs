@@ -141,10 +141,10 @@ impl ConicGraph {
         let root = root * side;
         let at = Double::from_f64(x);
         let minus = b.times(&at).plus(e).negated().hi;
-        // In exact arithmetic, the formulas (−b ± √Δ)/C and g/(−b ∓ √Δ) give the same y
-        // (`ConicGraph`). The one in which nothing cancels is used. If Δ is 0, this holds for each
-        // of them, and the first is used: at the end of a branch, x is rounded, so the exact Δ may
-        // be slightly negative, and the second formula would then be wrong.
+        // In exact arithmetic, (−b ± √Δ)/C and g/(−b ∓ √Δ) give the same y (`ConicGraph`). The
+        // formula in which nothing cancels is used. If the computed Δ is 0, nothing cancels in
+        // either. The first is then used, because the exact Δ may be slightly negative (x is
+        // rounded at the end of a branch), so the second would be wrong.
         if minus * side >= 0.0 || root == 0.0 {
             (minus + root) / c.hi
         } else {
@@ -287,19 +287,20 @@ impl Tangents {
     /// Intersects the tangents of the conic with the coefficients `factors` at the points `ends`,
     /// and bounds the error of the area between the arc and its chord.
     fn new<T: Real<Radius = f64>>(factors: &[T; 6], ends: &[ArcEnd<T>; 2]) -> Self {
-        // The chord and the two tangents are the sides of a triangle. Let κ − 1 be the sum of the
-        // absolute values of the gradient's terms, divided by the gradient's length. The computed
-        // gradient has a relative error of κ roundings, so the direction of each tangent has an
-        // error of κ roundings, in radians. If a side of length l turns by a small angle φ, the
-        // triangle's area changes by at most l²·φ/2. If the control point moves along a tangent,
-        // the triangle's area and the weight change in opposite directions, so that the area
-        // between arc and chord changes no more than the triangle's area.
+        // The area between arc and chord is part of the triangle of the chord and the two tangents.
+        // It has an error from the tangents' directions and one from the arc's weight.
         //
-        // The weight has an error, too. Its square is the quotient of two values of the conic's
-        // quadratic part Q. A value of Q has two errors: the rounding errors of its terms, and the
-        // effect of the error of its argument, a vector. The area between arc and chord grows no
-        // faster than the weight. An error of the root √Δ (`ConicGraph`) is not included: it means
-        // another conic within the given one's error, which moves points and tangents together.
+        // Directions: let κ − 1 be the sum of the absolute values of the terms of the conic's
+        // gradient, divided by its length. The gradient has a relative error of κ roundings, so a
+        // tangent's direction has an error of κ roundings, in radians. If a side of length l turns
+        // by a small angle φ, the triangle's area changes by at most l²·φ/2. The area between arc
+        // and chord changes no more.
+        //
+        // Weight: its square is the quotient of two values of the conic's quadratic part Q. Each
+        // has two errors: the roundings of its terms, and the error of its argument, a vector. The
+        // area between arc and chord grows no faster than the weight. An error of √Δ (`ConicGraph`)
+        // is not included: it moves points and tangents together, like an error of the conic
+        // itself.
         let [a, b, c, d, ..] = factors;
         let product = |[x, y]: &[T; 2], [z, w]: &[T; 2]| x.times(z).plus(&y.times(w));
         let length = |[x, y]: &[T; 2]| libm::hypot(x.to_f64(), y.to_f64());
@@ -432,12 +433,12 @@ impl Section {
     /// and how far the two are apart in y. Returns `None` unless both curves are arcs that bulge to
     /// the same side. The bounds are tight if the arcs are nearly parallel or nearly coincide.
     fn parallel_bounds(&self, other: &Self) -> Option<[f64; 2]> {
-        // Points of the two arcs with the same curve parameter are compared. Their heights are
-        // measured in y from the direction of this arc's chord. If the weights are equal, a point
-        // of each arc is the same weighted mean of that arc's three control points, so the heights
-        // differ by at most the largest difference between control points. A difference in x, times
-        // the slope of the steepest tangent, is added. A difference in weight, times the point's
-        // distance from the control point, is the most by which the point moves.
+        // Compares points of the two arcs that have the same curve parameter. Heights are measured
+        // in y from the direction of this arc's chord. If the weights are equal, a point of each
+        // arc is the same weighted mean of that arc's three control points. The heights then differ
+        // at most as much as those of two control points. Unequal weights move a point by at most
+        // their difference times the length of a side of the control polygon. A difference in x
+        // changes y by at most its product with the steepest slope.
         //
         // Rounding errors move a point by less than the sum of two terms. The first is eight times
         // the error of the arc's area, divided by the arc's width. The second is the rounding error

@@ -50,8 +50,9 @@ impl PictureWork {
 #[derive(Debug)]
 pub(super) struct PixelBudget<'a> {
     left: Cell<f64>,
-    /// Requested error bound of the pixel's mean, as a fraction of the pixel's area. An infinite
-    /// sum is truncated as soon as the omitted terms are at most a fixed fraction of this bound.
+    /// Requested error bound of the pixel's mean, as a fraction of the pixel's area. Checkerboards
+    /// are integrated by infinite series and sums. These are truncated as soon as the omitted terms
+    /// are at most a fixed fraction of this bound.
     pub tolerance: f64,
     /// Flag that is set once the picture is no longer wanted.
     cancel: &'a AtomicBool,

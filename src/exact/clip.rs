@@ -2,9 +2,9 @@
 //! `strips_simd`.
 //!
 //! In: a convex polygon and a linear form. Out: the parts on both sides of the form's zero line
-//! (Sutherland and Hodgman, "Reentrant polygon clipping", 1974, one half-plane at a time). Rounding
-//! displaces a crossing by a few unit roundoffs along its side; callers add this error to their
-//! bounds.
+//! (Sutherland and Hodgman, "Reentrant polygon clipping", 1974, one half-plane at a time). A new
+//! corner lies where a side of the polygon crosses the zero line. Rounding displaces it by a few
+//! unit roundoffs along the side; callers add this error to their bounds.
 
 use glam::DVec2;
 

@@ -66,11 +66,12 @@ impl Arc {
         let area = 0.5 * (products[0] - products[1]).abs() * share;
         BoundedSum {
             value: area,
-            // The area is half the difference of `products`, times the share of the triangle that
-            // the segment covers. The share has up to ten roundings. At |1 − w²| = `NEAR_PARABOLA`,
-            // the difference θ − sin θ·cos θ is only a quarter of its terms, which makes their
-            // roundings four times as large. In a flat triangle, the two products are nearly equal.
-            // Their own roundings, three each, may then exceed those of their difference.
+            // The area is half the difference of `products`, times `share`, the share of the
+            // triangle that the segment covers. `share` has up to ten roundings. At |1 − w²| =
+            // `NEAR_PARABOLA`, the difference θ − sin θ·cos θ in `share` is only a quarter of θ, so
+            // that the roundings of its two terms are four times as large, relative to the
+            // difference. In a flat triangle, the two products are nearly equal. Their own
+            // roundings, three each, may then exceed those of their difference.
             bound: UNIT * (48.0 * area + 2.0 * (products[0].abs() + products[1].abs()) * share),
         }
     }

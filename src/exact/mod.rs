@@ -16,10 +16,10 @@
 //! 2. In any other pixel, the boundaries of what may be seen there cut it into regions. These are
 //!    convex polygons if all boundaries are lines (`arrangement`), and slabs between neighbouring
 //!    curves if some are conics (`slabs`). A pixel with too many curves is quartered first.
-//! 3. One ray into each region determines what is seen there (`region`). Its hits are decided as
-//!    exactly as those of a sample's ray. Hidden boundaries do no harm, because both sides of them
-//!    get the same colour. (Catmull, "A hidden-surface algorithm with anti-aliasing", 1978,
-//!    integrates a pixel's polygons this way; conics and the board are added here.)
+//! 3. One ray into each region determines what is seen there (`region`). The ray is traced with the
+//!    same exact decisions as in a sampled picture. Hidden boundaries do no harm, because both
+//!    sides of them get the same colour. (Catmull, "A hidden-surface algorithm with anti-aliasing",
+//!    1978, integrates a pixel's polygons this way; conics and the board are added here.)
 //! 4. Areas have closed forms. `conic_segment` computes the area between an arc and its chord;
 //!    `checker` integrates a checkerboard over a region.
 //!
@@ -80,9 +80,8 @@ const MAX_CURVES: usize = 12;
 /// thirds of the time; with 16, it takes four times as long.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// Maximum number of times per pixel that an already computed part of the pixel is quartered to
-/// reduce its error bound. While the pixel's bound exceeds the tolerance, the part with the largest
-/// bound comes first. Near a point that a few curves share, each quartering reduces the bound to a
-/// quarter; 16 of them reduce it by a factor of 2^32.
+/// reduce its error bound. Near a point that a few curves share, each quartering reduces the bound
+/// to a quarter; 16 of them reduce it by a factor of 2^32.
 const MAX_QUARTERINGS: usize = 16;
 /// Maximum memory of a pixel's queued parts, in bytes. Temporary memory for computing a part is not
 /// included. Above the maximum, no part is quartered any more, and the areas of parts that are not
@@ -260,10 +259,10 @@ impl<'a, const N: usize> Integrator<'a, N> {
         (flow.is_continue() && !is_over()).then_some(film.pixels)
     }
 
-    /// Calls `show` with each area that shows only one object, and with each other pixel, together
-    /// with the fraction of the area that shows each object. The world must be made by
-    /// [`World::by_object`], so that palette indices stand for objects. If the work limit is
-    /// exceeded, each remaining pixel is treated as showing only the object in its middle. Returns
+    /// Calls `show` with each area that shows only one entry of the world's palette, and with each
+    /// other pixel, together with the fraction of the area that shows each entry. An entry is a
+    /// colour or, in a world made by [`World::by_object`], an object. If the work limit is
+    /// exceeded, each remaining pixel is treated as showing only the entry in its middle. Returns
     /// whether the errors of all fractions are at most 1e-6.
     pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
         let mut is_exact = true;
@@ -313,8 +312,10 @@ impl<'a, const N: usize> Integrator<'a, N> {
         }
     }
 
-    /// Computes the fraction of the pixel (`x`, `y`) that shows each colour. The pixel is quartered
-    /// if too many curves pass through it or if its bound exceeds the tolerance.
+    /// Computes the fraction of the pixel (`x`, `y`) that shows each colour. While the total error
+    /// bound of the pixel's parts exceeds the tolerance, quarters the part with the largest bound,
+    /// unless a limit ([`MIN_SIDE`], [`MAX_QUARTERINGS`]) forbids it or the last quartering hardly
+    /// helped. Stops when the budget is spent or [`MAX_MEMORY`] would be exceeded.
     fn pixel_shares(
         &self,
         x: u32,
@@ -431,8 +432,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         film.set(pixel.x, pixel.y, self.mean(&shares, bound));
     }
 
-    /// Computes the colours' shares in a part of a pixel. If too many curves pass through the part
-    /// or the budget is spent, the result is [`Crowded`](PieceState::Crowded), with a bound of 1.
+    /// Computes the colours' shares in a part of a pixel. If too many curves pass through it or the
+    /// budget is spent, the part is [`Crowded`](PieceState::Crowded), and all of it is doubtful.
     fn piece(
         &self,
         sub_pixel: SubPixel,
@@ -489,9 +490,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 }
 
-/// Returns the maximum rounding error of a mean of `colors` colours. The sums of products and of
-/// shares each have `colors` roundings; the products and the quotient add one each. A single colour
-/// has none.
+/// Returns the maximum rounding error of a mean of `colors` colours. Two sums have `colors`
+/// roundings each; the products and the quotient have one each. A single colour has none.
 fn rounding(colors: usize) -> f64 {
     match colors {
         0..=1 => 0.0,

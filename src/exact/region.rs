@@ -123,9 +123,10 @@ impl<'a> Regions<'a> {
             sum.bound += segment.bound;
         }
         let half = if local_board.odd { -0.5 } else { 0.5 } * sum.value;
-        // `sum.bound` assumes that each factor of the board's forms is rounded once.
-        // `relative_error` may be many times this rounding error, so the bound is multiplied by one
-        // plus the ratio of the two. The error of a share never exceeds the region's area.
+        // `sum.bound` assumes that each factor of the board's forms has an error of one rounding.
+        // `relative_error` may be many times as large, so the bound is multiplied by one plus the
+        // ratio of the two. A share lies between 0 and the region's area, so its error is at most
+        // the larger of the two colours' shares.
         let bound = 0.5 * sum.bound * (1.0 + local_board.relative_error / f64::UNIT);
         let bound = bound.min(0.5 * region.area + half.abs());
         self.shares.add(first, 0.5 * region.area + half);
@@ -146,7 +147,7 @@ impl<'a> Regions<'a> {
 
     /// Returns the object that is seen at a point (`None` for the background), and whether
     /// double-double arithmetic decides this with certainty. If not, the highest precision decides.
-    /// Returns `None` and `false` if the budget does not afford the highest precision.
+    /// Returns `None` and `false` if too little of the budget is left for the highest precision.
     fn object_at(&self, at: DVec2) -> (Option<usize>, bool) {
         let (budget, count) = (self.budget, self.candidates.len() as f64);
         budget.charge(REGION_WORK + RAY_WORK * count);

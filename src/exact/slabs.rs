@@ -130,9 +130,9 @@ struct Slabs<'a> {
 
 impl Slabs<'_> {
     /// Adds the regions of the slab from `left` to `right` and returns `None`. If curves in the
-    /// slab may cross, adds nothing and returns the x at which to cut the slab. A slab is never cut
-    /// if it is too narrow or there are already `max_slabs` slabs; its doubtful area is then added
-    /// to the error bound.
+    /// slab may cross, adds nothing and returns the x at which to cut the slab. If the slab is too
+    /// narrow or there are already `max_slabs` slabs, it is not cut: the area between curves that
+    /// may cross is added to the error bound.
     fn slab(&mut self, left: f64, right: f64, max_slabs: usize) -> Option<f64> {
         let (middle, width) = (0.5 * (left + right), right - left);
         let is_last = width < MIN_WIDTH || self.slabs >= max_slabs;

@@ -53,14 +53,14 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     let corners = corners.map(|corner| view.at_depth(corner, facts.d));
     let window = view.eye + view.ahead * facts.d;
     let in_window = view.at_depth(middle, facts.d);
-    let size = corners[0].distance(view.eye);
-    let is_near = |hit: &Hit| hit.t <= FARTHEST * size;
+    let to_corner = corners[0].distance(view.eye);
+    let is_near = |hit: &Hit| hit.t <= FARTHEST * to_corner;
     let end = match &hit {
         Some((hit, _)) if is_near(hit) => hit.point,
         Some(_) => view.eye + (in_window - view.eye) * 3.0,
         None => view.eye + (in_window - view.eye) * 2.0,
     };
-    let reach = 1.6 * end.distance(view.eye).max(size);
+    let reach = 1.6 * end.distance(view.eye).max(to_corner);
 
     let mut points = vec![view.eye, window, end];
     points.extend(corners);
@@ -224,10 +224,10 @@ fn objects_within(scene: &Scene, reach: f64, first: Option<usize>) -> Vec<Body> 
     bodies.filter(is_small).take(MOST_OBJECTS).collect()
 }
 
-/// Returns lines between the squares of the checkerboards, within the area of the figure's points,
-/// `points`. If there are many lines, only about [`MOST_LINES`] in each direction are returned.
-/// Adds the corners of each board's drawn area to `points`. Boards much higher or lower than the
-/// eye, or with very large squares, are left out.
+/// Returns lines between the squares of the checkerboards, within the bounding box of `points`, the
+/// points of the figure. If there are many lines, only about [`MOST_LINES`] in each direction are
+/// returned. Adds the corners of each board's drawn area to `points`. Boards much higher or lower
+/// than the eye, or with very large squares, are left out.
 fn boards(scene: &Scene, points: &mut Vec<DVec3>, reach: f64) -> Vec<[DVec3; 2]> {
     let mut lines = Vec::new();
     let (min, max) = bounds3(points);

@@ -1,9 +1,9 @@
 //! Writes a drawing as SVG.
 //!
-//! In: marks (lines, arrows and dots) in the order in which they are drawn, and labels with the
-//! points that they name. Out: the text of the file. Labels are placed last, where they hide
-//! neither marks nor each other. Lengths are rounded to one decimal, so that the file is the same
-//! on every machine.
+//! A drawing consists of marks (lines, arrows and dots), which are drawn in the order in which they
+//! are added, and of labels, each with the point that it names. Labels are placed last, so that
+//! they hide neither marks nor each other. Lengths are rounded to one decimal, so that the file is
+//! the same on every machine.
 //!
 //! The style sheet has no CSS variables, since programs for printing, such as librsvg, do not
 //! support them. The colours are those of Okabe and Ito, which colour-blind people can distinguish.
@@ -182,7 +182,7 @@ impl Canvas {
         });
     }
 
-    /// Writes a text below a drawing that is cropped.
+    /// Sets the text below the drawing. Only [`finish_cropped`](Self::finish_cropped) writes it.
     pub fn note(&mut self, text: impl Into<String>) {
         self.note = text.into();
     }
@@ -318,7 +318,8 @@ fn covers(rectangle: [DVec2; 2], polygon: &[DVec2]) -> bool {
     let [least, most] = sides.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], side| {
         [least.min(side), most.max(side)]
     });
-    // A point is inside if it lies on the same side of every edge.
+    // No edge crosses the rectangle, so it lies completely inside the polygon or completely
+    // outside. It is inside if its first corner lies on the same side of every edge.
     is_crossed || !polygon.is_empty() && (least >= 0.0 || most <= 0.0)
 }
 

@@ -31,7 +31,7 @@ const PITCH: DVec2 = DVec2::new(226.0, 262.0);
 /// # Errors
 ///
 /// Returns a sentence for the user.
-pub fn most(count: u64) -> Result<(), String> {
+pub fn refuse_too_many(count: u64) -> Result<(), String> {
     if count <= MOST {
         Ok(())
     } else {
@@ -52,7 +52,7 @@ pub fn draw(scene: &Scene, [x, y]: [u32; 2]) -> Result<String, String> {
         scene.image.height,
     )
     .samples_per_pixel();
-    most(count)?;
+    refuse_too_many(count)?;
     let mut canvas = Canvas::new(3.0 * PITCH.y + 14.0);
     let mut told = Vec::new();
     for (index, method) in Method::SAMPLED.into_iter().enumerate() {
@@ -111,9 +111,10 @@ fn kept(method: Method, n: u64) -> String {
 }
 
 /// Draws the cells of a pixel, for a method that places one of the `n` samples in each cell. The
-/// pixel is a square with the top left corner `corner` and the side `side`. If the method divides
-/// the pixel in several ways at once ([`Tiling`]s), the lines of the first way are stronger, unless
-/// its cells are whole rows or columns.
+/// pixel is a square with the top left corner `corner` and the side `side`. A method may divide the
+/// pixel in several ways at once ([`Tiling`]s), for example into cells, rows and columns. If the
+/// first tiling is a grid, i.e. consists of neither whole rows nor whole columns, its lines are
+/// drawn stronger, so that the cells can be told from the rows and columns.
 pub fn strata(canvas: &mut Canvas, method: Method, n: u64, corner: DVec2, side: f64) {
     let at = |x: f64, y: f64| corner + DVec2::new(x, y) * side;
     let tilings = if n > 0 { tilings(method, n) } else { vec![] };
@@ -130,7 +131,7 @@ pub fn strata(canvas: &mut Canvas, method: Method, n: u64, corner: DVec2, side: 
 
 /// Tints one stratum of each kind that the method uses: a cell, a column or a row. Returns the CSS
 /// class and the name of each tinted stratum.
-pub fn marked(
+pub fn tint_strata(
     canvas: &mut Canvas,
     method: Method,
     n: u64,
@@ -144,7 +145,8 @@ pub fn marked(
             .rows
             .first()
             .map_or(0.0, |cells| *cells as f64 / n as f64);
-        // Three places apart from each other: at the top left, at the right, and at the bottom.
+        // Column, row and cell are tinted at places apart from each other: at the right, at the
+        // bottom, and at the top left.
         let (stratum, from, to) = match (tiling.is_columns(), tiling.is_rows()) {
             (true, _) => {
                 let stratum = ("blue", "a column");
@@ -159,8 +161,8 @@ pub fn marked(
                 (("red", "a cell"), DVec2::ZERO, DVec2::new(width, height))
             }
         };
-        // If several grids have cells, only a cell of the first grid is tinted. Its cells are the
-        // most nearly square ones.
+        // If several tilings consist of cells, only a cell of the first one is tinted, since its
+        // cells are the most nearly square.
         if marked.contains(&stratum) {
             continue;
         }

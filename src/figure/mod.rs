@@ -1,7 +1,6 @@
-//! Draws figures of scenes for teaching material.
+//! Draws figures of scenes for teaching material, as SVG files that are the same on every machine.
 //!
-//! In: a scene, and the kind of figure. Out: the text of an SVG file, the same on every machine. A
-//! figure shows one idea with few marks, and each mark has its label beside it. The figures use
+//! A figure shows one idea with few marks, and each mark has its label beside it. The figures use
 //! results of other modules: samples come from [`sampling`](crate::sampling), visible objects from
 //! the tracer, outlines from the editor, and axes and angles from [`inspect`](crate::inspect).
 //!
@@ -50,7 +49,7 @@ pub const KINDS: [(&str, Kind); 5] = [
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Choice<'a> {
     /// Column and row of the pixel. It is for the figures of the camera, of a pixel, and of all
-    /// methods.
+    /// methods, which takes the pixel (0, 0) if there is none.
     pub pixel: Option<[u32; 2]>,
     /// Name of the triangle. It is for the figure of a triangle.
     pub object: Option<&'a str>,

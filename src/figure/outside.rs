@@ -1,9 +1,8 @@
-//! Shows a scene from outside, i.e. not from its camera. The view fits given points into a
-//! rectangle of the drawing.
+//! Shows a scene from outside, i.e. not from its camera.
 //!
-//! In: points in space, and the side from which they are seen. Out: their positions in the drawing.
-//! The observer is a camera as in the scene language, so that [`Projection`] and the editor's
-//! outlines can be used.
+//! The view maps given points in space into a rectangle of the drawing, which they fill as far as
+//! possible. The observer is a camera as in the scene language, so that [`Projection`] and the
+//! editor's outlines can be used.
 
 use std::sync::Arc;
 
@@ -162,8 +161,8 @@ pub fn draw_objects(
     }
 }
 
-/// Removes each point of a line that is less than one SVG unit away from the one before it. Such
-/// points are not visible, and many small spheres would make a large file.
+/// Removes each point of a line that is less than one SVG unit away from the one before it, except
+/// the last point. Such points are not visible, and many small spheres would make a large file.
 fn thinned(mut line: Vec<DVec2>) -> Vec<DVec2> {
     let end = line.last().copied();
     line.dedup_by(|next, kept| next.distance_squared(*kept) < 1.0);

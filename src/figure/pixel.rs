@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use super::{
     canvas::{Canvas, length},
-    methods::{marked, most, strata},
+    methods::{refuse_too_many, strata, tint_strata},
 };
 use crate::{
     area::Area,
@@ -44,7 +44,7 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
         color: mean,
         ..
     } = samples(&scene.sampler, &world, [x, y])?;
-    most(seen.len() as u64)?;
+    refuse_too_many(seen.len() as u64)?;
     let exact = Sampler {
         method: Method::Exact,
         ..scene.sampler
@@ -60,7 +60,7 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
         CORNER,
         SIDE,
     );
-    let marked = marked(
+    let marked = tint_strata(
         &mut canvas,
         scene.sampler.method,
         seen.len() as u64,
@@ -85,7 +85,7 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
     );
     // Below the list of colours, the name of each tinted stratum is written in the stratum's own
     // colour.
-    let top = 116.0 + 32.0 * colors.len().min(COLORS) as f64;
+    let top = 116.0 + 32.0 * colors.len() as f64;
     for (at, &(class, stratum)) in marked.iter().enumerate() {
         let place = DVec2::new(400.0 + 100.0 * at as f64, top - 22.0);
         canvas.text(class, "start", place, stratum);
@@ -228,16 +228,17 @@ fn name(scene: &Scene, world: &World, at: DVec2) -> String {
     }
 }
 
-/// Returns a pixel that suits the figure: the one with the highest score by [`evenness`]. Pixels at
-/// changes of colour are tried, along the rows of a coarse grid over the picture.
+/// Returns a pixel that suits the figure: the one with the highest score by [`evenness`]. At most
+/// 90 rows of the picture are searched, and only pixels at which the colour changes along the row
+/// are tried. If there is none, returns the pixel in the middle of the picture.
 fn most_colors(scene: &Scene, world: &World) -> [u32; 2] {
     let (width, height) = (scene.image.width, scene.image.height);
     let (columns, rows) = (width.min(64), height.min(90));
     let slot = |x: u32, y: u32| world.slot_at(x, y, DVec2::ZERO);
     let mut best = (f64::NEG_INFINITY, [width / 2, height / 2]);
-    for y in (0..rows).map(|j| (height / rows) * j + height / rows / 2) {
+    for y in (0..rows).map(|j| (2 * j + 1) * height / (2 * rows)) {
         for i in 1..columns {
-            let [mut from, mut to] = [i - 1, i].map(|i| width / columns * i);
+            let [mut from, mut to] = [i - 1, i].map(|i| i * (width - 1) / (columns - 1));
             let first = slot(from, y);
             if first == slot(to, y) {
                 continue;

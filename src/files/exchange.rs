@@ -84,13 +84,14 @@ mod tests {
 
     use super::*;
 
-    /// Number of the test's last round, where the first is 0. The other program saves a little
-    /// later in each round. With 400, it saves before, during and after the replacement. With far
-    /// fewer rounds, the latest moments would not be tested.
+    /// Number of the test's last round, where the first is 0. From round to round, the other
+    /// program saves the file a little later, relative to the call of [`replace`]. With 400, it
+    /// saves before, during and after the call. With far fewer rounds, it would never save after
+    /// the call.
     const LAST: u32 = 400;
 
-    /// In each round, another program saves the file at a later moment, from before the replacement
-    /// to after it. The saved file must never be lost.
+    /// Another program saves a file while [`replace`] replaces it. In each round, it saves a little
+    /// later than in the round before. What it saves must never be lost.
     #[test]
     fn what_is_saved_meanwhile_stays() {
         let folder = tempdir().unwrap();
@@ -105,8 +106,8 @@ mod tests {
             fs::write(&theirs, "theirs").unwrap();
             let save = || fs::rename(&theirs, &path).unwrap();
             // On a busy machine, the other program's thread may always run too late, or always too
-            // early. Therefore, the first round saves before the replacement, and the last round
-            // after the replacement.
+            // early. Therefore, the first round saves the file before the call of `replace`, and
+            // the last after it.
             let done = match round {
                 0 => {
                     save();

@@ -1,6 +1,5 @@
-//! The only module that opens, creates and replaces files.
-//!
-//! In: a path, and the purpose of the file. Out: an open file, or an error in plain words.
+//! The only module that opens, creates and replaces files. Its errors say in plain words what is
+//! wrong.
 //!
 //! - `kind` checks the kind of a file before it is opened, so that the program does not wait for a
 //!   pipe.

@@ -21,7 +21,8 @@ pub fn id(found: &Metadata) -> FileId {
     (found.dev(), found.ino())
 }
 
-/// Returns (0, 0), since the standard library provides no inode numbers on this system.
+/// Returns (0, 0), since the standard library provides no inode numbers on this system. Files are
+/// then distinguished only by their contents.
 #[cfg(not(unix))]
 pub fn id(_: &Metadata) -> FileId {
     (0, 0)

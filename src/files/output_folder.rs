@@ -31,7 +31,8 @@ const HEAD: &str = "# Files that pinhole made here, and replaces unless they wer
 const LIST_LIMIT: u64 = 16 << 20;
 
 /// Maximum length, in bytes, of an existing file that may be replaced. Pinhole's output files are
-/// far shorter, so a longer file must have been changed by the user. It is not read completely.
+/// far shorter, so a longer file must have been changed by the user. It is not replaced, and not
+/// read completely.
 const FILE_LIMIT: u64 = 256 << 20;
 
 /// A folder for the output files of a command. No file of the user is replaced in it.
@@ -117,9 +118,9 @@ impl OutputFolder {
         for (name, _) in files {
             self.check(name)?;
         }
-        // The new hashes are added to the list before any file is written. If this process is
-        // killed while it writes, the list contains the hash of each file's old content and of its
-        // new content.
+        // The new hashes are added to the list before any file is written, and the old ones are
+        // kept. If this process is killed while it writes, each file still has a hash from the
+        // list, whether it was written already or not, so it is not taken for the user's.
         for (name, text) in files {
             let hashes = self.hashes.entry(name.clone()).or_default();
             let hash = hash(text.as_ref());

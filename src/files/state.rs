@@ -1,4 +1,4 @@
-//! The folder for Pinhole's private files of a user, usually `~/.local/state/pinhole`.
+//! The folder for the user's private Pinhole files, usually `~/.local/state/pinhole`.
 
 use std::{
     env, fs, io,

@@ -12,9 +12,10 @@ use tempfile::NamedTempFile;
 
 use super::kind;
 
-/// Maximum number of files that are created in order to lock one. Another process may lock a new
-/// file for a moment while it looks for leftover files, but hardly a hundred times in a row.
-/// Without a limit, the loop would be endless if a program removed every new file.
+/// Maximum number of attempts to create and lock a temporary file. An attempt fails if another
+/// process, which looks for leftover files, locks the new file for a moment. This hardly happens a
+/// hundred times in a row. Without a limit, the loop would be endless if a program removed every
+/// new file.
 const MOST_TRIES: usize = 100;
 
 /// Calls `make`, which creates a file, until the file can be locked, at most [`MOST_TRIES`] times.
@@ -25,7 +26,8 @@ pub fn locked(mut make: impl FnMut() -> io::Result<NamedTempFile>) -> io::Result
         // If the file system does not support locks, no other process can lock the file. The file
         // is therefore used without a lock.
         let is_locked = !matches!(file.as_file().try_lock(), Err(TryLockError::WouldBlock));
-        // Before the file was locked, another process may have removed it as a leftover.
+        // Before the file was locked, another process may have removed it as a leftover, so the
+        // function checks that it still exists.
         if is_locked && file.path().exists() {
             return Ok(file);
         }
@@ -34,9 +36,10 @@ pub fn locked(mut make: impl FnMut() -> io::Result<NamedTempFile>) -> io::Result
     Err(io::Error::other(message))
 }
 
-/// Returns the unlocked files in a folder, with their names. They were left by processes that were
-/// killed. A name must consist of `prefix`, six random characters and `suffix`; other files are
-/// ignored. The returned files are locked until they are closed.
+/// Returns the unlocked files in a folder, with their names. Processes lock their temporary files,
+/// so the unlocked ones were left by processes that were killed. A name must consist of `prefix`,
+/// six random characters and `suffix`; other files are ignored. The returned files are locked until
+/// they are closed.
 pub fn left(folder: &Path, prefix: &str, suffix: &str) -> Vec<(OsString, File)> {
     let is_ours = |name: &OsString| {
         let name = name.to_str();

@@ -27,7 +27,7 @@ impl<T: Write + Seek> Sink for T {}
 #[derive(Clone, Copy, Debug)]
 pub enum Purpose<'a> {
     /// The user named the file. An existing file is replaced, and links are followed. A pipe or a
-    /// device is also allowed; the content is written to it when it is complete.
+    /// device is also allowed; nothing is written to it until the content is complete.
     Named,
     /// Pinhole chose the name of a file in this folder. An existing file is replaced. Links are
     /// followed, unless they lead out of the folder.
@@ -36,7 +36,7 @@ pub enum Purpose<'a> {
     /// file existed then, it is replaced only if it has not changed since. If it did not exist
     /// then, writing fails if it exists now.
     Again {
-        /// The folder that a link must not lead out of.
+        /// The folder in which the file must lie after links are followed.
         within: &'a Path,
         /// The file as it was read before, or the record that it did not exist.
         original: &'a Original,
@@ -46,13 +46,14 @@ pub enum Purpose<'a> {
     Private(&'a Path),
     /// The file must be new. If a file exists already, it stays unchanged, and writing fails.
     New,
-    /// The file was read, and its content is changed. It is replaced only if no other program has
-    /// changed it since. Links are followed.
+    /// The program changes a file that it has read. The file is replaced only if no other program
+    /// has changed it since. Links are followed.
     Change(&'a Original),
 }
 
 impl<'a> Purpose<'a> {
-    /// Returns the folder that links must not lead out of, or `None` if they may lead anywhere.
+    /// Returns the folder in which the file must lie after links are followed, or `None` if it may
+    /// lie anywhere.
     fn outer(self) -> Option<&'a Path> {
         match self {
             Self::Within(outer) | Self::Private(outer) | Self::Again { within: outer, .. } => {
@@ -62,8 +63,8 @@ impl<'a> Purpose<'a> {
         }
     }
 
-    /// Returns the earlier content of the file, or `None` if the file was not read before. A file
-    /// that has changed since it was read is not replaced.
+    /// Returns the content of the file as it was read before, or `None` if it was not read. Before
+    /// the file is replaced, this content is compared with the present one.
     fn original(self) -> Option<&'a Original> {
         match self {
             Self::Change(original) | Self::Again { original, .. } => Some(original),
@@ -226,7 +227,8 @@ fn behind_links(path: &Path) -> io::Result<WriteTarget> {
         },
         Err(error) if error.kind() == io::ErrorKind::NotFound => match fs::read_link(path) {
             // The link leads to a file that does not exist, so the new file is created at the end
-            // of the link. If links form a cycle, the system reports another error.
+            // of the link. If links form a cycle, the error is not `NotFound`, so the recursion
+            // ends.
             Ok(target) => behind_links(&folder(path).join(target)),
             Err(_) => Ok(WriteTarget::File(FileTarget {
                 path: path.to_owned(),
@@ -256,8 +258,8 @@ fn replace(
     temporary.as_file().sync_all()?;
     check(cancel)?;
     check_folder(target, purpose)?;
-    // If the file was read before, another program may have changed it while the content was
-    // written, so the replacement compares the file with `original` again.
+    // If the file was read before, another program may have changed it while the new content was
+    // written. So the file is compared with `original` again just before it is replaced.
     let (must_be_new, refused) = match purpose.original() {
         Some(original) if original.bytes().is_some() => {
             return exchange::replace(temporary, &target.path, original);

@@ -115,9 +115,8 @@ pub fn write_exr_bands<P: AsFloats, B: Borrow<Film<P>>>(
 fn headers(part: Area, whole: Area, digest: Option<&str>) -> Headers {
     let channel = |name: &str| ChannelDescription::named(name, SampleType::F32);
     let size = Vec2(part.width as usize, part.height as usize);
-    // Blocks of 16 rows compress better than single rows. Several copies of a block are in memory
-    // at once, which for a very wide picture would need much memory. Very wide pictures are
-    // therefore written in blocks of one row.
+    // Blocks of 16 rows compress better than single rows, but several copies of a block are in
+    // memory at once. Very wide pictures are therefore written in blocks of one row.
     let compression = match part.width {
         0..=0x1_0000 => Compression::ZIP16,
         _ => Compression::ZIP1,

@@ -40,8 +40,8 @@ pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<u64, TooLa
     }
 }
 
-/// Checks that a picture's memory is available. In addition, tries to allocate it, and frees it at
-/// once, since the system may refuse the allocation.
+/// Checks that a picture's memory is available. The system may nevertheless refuse the allocation,
+/// so the function also tries to allocate the memory, and frees it at once.
 ///
 /// # Errors
 ///

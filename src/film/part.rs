@@ -9,10 +9,10 @@ use crate::area::Area;
 /// compared at each position, so that a wrong result is more likely.
 const MAX_COMPARED: u64 = 100_000_000;
 
-/// Maximum sum of squared differences at the best position, as a fraction of the mean of the sums
-/// at all positions. If the fraction is larger, no position is returned. At the right position, the
-/// usual noise of sampling leaves a fraction far below this limit. If the part does not fit
-/// anywhere, the fraction is near 1.
+/// Maximum fraction of the colour differences that may remain at the best position. The sum of the
+/// squared differences there is divided by the mean of the sums at all positions. If the fraction
+/// is larger, no position is returned. At the right position, the usual noise of sampling leaves a
+/// fraction far below this limit. If the part does not fit anywhere, the fraction is near 1.
 const MAX_LEFT: f64 = 0.2;
 
 /// Minimum area of a part, as a fraction of the whole picture's area. No position is returned for a
@@ -31,8 +31,9 @@ pub fn place_of_part(part: &Film, whole: &Film) -> Option<Area> {
     }
     let places = u64::from(columns) * u64::from(rows);
     let compared = (MAX_COMPARED / places).clamp(16, 400).min(area.pixels());
-    // Only every `step`-th pixel of the part, counted row by row, is compared. If `step` divided
-    // the part's width, all compared pixels would be in few columns. An odd number rarely does.
+    // Only every `step`-th pixel of the part, counted row by row, is compared. If the part's width
+    // were a multiple of `step`, all compared pixels would be in few columns. Widths are often
+    // even, so `step` is made odd.
     let step = (area.pixels() / compared).max(1) | 1;
     let points: Vec<(u32, u32)> = (0..area.pixels())
         .step_by(step as usize)

@@ -44,11 +44,13 @@ impl ExrPlace {
     }
 }
 
-/// Reads from an OpenEXR file where it lies in a whole picture. Its pixels are not read.
+/// Returns the position in the whole picture of the part that an OpenEXR file shows. Does not read
+/// the pixels.
 ///
 /// # Errors
 ///
-/// The file is damaged, has several layers, or does not lie in its display window.
+/// The file is damaged or has several layers, or its data window begins left of or above its
+/// display window.
 pub fn read_exr_place(file: impl Read + Seek) -> io::Result<ExrPlace> {
     place(block::read(file, false).map_err(io_error)?.headers())
 }

@@ -18,8 +18,8 @@ pub trait Pixel: Copy + Default + Send + Sync {
     fn of(light: [f64; 3], encoder: &Encoder) -> Self;
 
     /// Returns whether the pixel is certain: whether all colours within `bound` of `light` in each
-    /// channel are converted to the same pixel. For 64-bit floats, this means the same 32-bit
-    /// floats, because EXR files contain these.
+    /// channel are converted to the same pixel. For 64-bit floats, it is enough if the colours are
+    /// equal as 32-bit floats, because EXR files contain these.
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool;
 }
 

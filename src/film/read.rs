@@ -124,7 +124,8 @@ fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unread
     let opacity = match rounding {
         Rounding::Float => fill(&mut film, &image.into_rgba32f(), f64::from, f64::from),
         // The library converts bytes to 16-bit numbers: a byte k becomes 257 · k. This is the same
-        // fraction of the range, since 65535 = 257 · 255. So one table of light serves for both.
+        // fraction of the range, since 65535 = 257 · 255. So bytes and 16-bit numbers share one
+        // table of linear light.
         _ => {
             let light = light_of_words();
             let light = |word: u16| light[usize::from(word)];
@@ -192,7 +193,7 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let word = |index: usize| match rounding {
         Rounding::Word => u16::from_be_bytes([samples[2 * index], samples[2 * index + 1]]),
         // A byte k becomes the 16-bit number 257 · k. This is the same fraction of the range, since
-        // 65535 = 257 · 255. So one table of light serves for both.
+        // 65535 = 257 · 255. So bytes and 16-bit numbers share one table of linear light.
         _ => 257 * u16::from(samples[index]),
     };
     let count = film.pixels().len();

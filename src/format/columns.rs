@@ -7,8 +7,9 @@
 //! - the fields of objects of one kind, up to the first field whose name differs.
 //!
 //! A line of comments separates groups of objects. The braces of `image`, `camera` and `sampler`
-//! are aligned wherever these blocks stand, since they belong together by their meaning. Lines that
-//! would need many blanks to be aligned are not in the same column.
+//! are aligned wherever these blocks stand, since they belong together by their meaning. If parts
+//! differ much in width, the next parts are not all aligned in one column, since that would need
+//! many blanks.
 
 use super::{
     entries::{BlockEntry, Entry, EntryKind},
@@ -67,7 +68,8 @@ fn keep_rows(entries: &mut [Entry<'_>]) {
     }
 }
 
-/// Returns whether both entries are blocks of one kind, each written on one line.
+/// Returns whether both entries are blocks of one kind, each written on one line and not much wider
+/// than allowed.
 fn is_row_beside(a: &Entry<'_>, b: &Entry<'_>) -> bool {
     let is_row = |block: &BlockEntry<'_>| block.on_one_line || block.is_nearly_one_line;
     match (block(a), block(b)) {

@@ -62,7 +62,9 @@ pub struct BlockEntry<'s> {
     pub entries: Vec<Entry<'s>>,
     /// Whether the block is laid out on one line.
     pub on_one_line: bool,
-    /// Whether the block was written on one line and is at most a fifth wider than allowed.
+    /// Whether the block was written on one line and is at most a fifth wider than allowed. Such a
+    /// block stays on one line if it is part of a table, i.e. if at least three such blocks of one
+    /// kind follow each other.
     pub is_nearly_one_line: bool,
 }
 
@@ -74,7 +76,8 @@ impl BlockEntry<'_> {
 }
 
 impl Entry<'_> {
-    /// Returns the width of the entry, in characters, if its block is laid out on one line.
+    /// Returns the width that the entry has, in characters, on the line of a block that is laid out
+    /// on one line.
     pub fn width_in_line(&self) -> usize {
         let comments = self.leading.iter().chain(&self.trailing);
         let comments: usize = comments.map(|comment| comment.chars().count() + 1).sum();
@@ -106,9 +109,9 @@ enum Container {
 }
 
 impl<'s> TokenReader<'_, 's> {
-    /// Returns the entries of `nodes`, i.e. of a file's items or a block's fields, and of the
-    /// comments between the nodes and after them up to the offset `end`. The second list contains
-    /// the comments that stand after a block's `{` on the same line.
+    /// Makes the entries of `nodes` (a file's items or a block's fields), and of the comments
+    /// between and after the nodes, up to the offset `end`. Also returns a list of the comments
+    /// that stand after a block's `{` on the same line.
     fn entries<N>(
         &mut self,
         nodes: impl IntoIterator<Item = impl Borrow<N>>,
@@ -238,10 +241,10 @@ fn entry(what: EntryKind<'_>) -> Entry<'_> {
 /// The comments of one line, and whether a blank line precedes them.
 type CommentLine<'s> = (bool, Vec<&'s str>);
 
-/// Assigns the comments of `gap`, which stands between two tokens, to entries. Comments on the line
-/// of the previous entry are added to that entry. Each further line of comments becomes an entry,
-/// except the last line. The comments of the last line are returned, because the next entry may
-/// stand on the same line.
+/// Assigns comments to entries. `gap` contains the comments between two tokens. Comments on the
+/// line of the previous entry are added to that entry. Each further line of comments becomes an
+/// entry, except the last line. Its comments are returned, because the next entry may stand on the
+/// same line.
 fn comments<'s>(
     gap: Gap<'s>,
     container: Container,

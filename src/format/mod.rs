@@ -1,8 +1,9 @@
 //! The canonical layout of a scene's text.
 //!
-//! In: a text without syntax errors. Out: the same tokens and comments in the same order, with the
-//! white space between them that `grammar/language.md` describes under "Layout". The meaning of
-//! names does not matter, so a scene with other mistakes can be formatted.
+//! Formatting keeps all tokens and comments in the same order, and puts the white space between
+//! them that `grammar/language.md` describes under "Layout". A text with syntax errors is not
+//! formatted. The meaning of names does not matter, so a scene with other mistakes can be
+//! formatted.
 //!
 //! Of the original white space, only line ends matter: they decide whether a block stands on one
 //! line, where blank lines separate groups, and to which line a comment belongs. Two texts that
@@ -105,8 +106,8 @@ fn is_whole(tree: &Tree<'_>) -> bool {
 }
 
 /// Returns the mistakes that prevent a text from being formatted, as `check` reports them, without
-/// other problems of the scene. The scene is analyzed, because the report of a missing value
-/// depends on which names are known.
+/// other problems of the scene. The meaning of names is analyzed, too: if a field is unknown,
+/// `check` does not report that its value is missing, so this is not reported here either.
 fn mistakes(source: &Source) -> Vec<Diagnostic> {
     let sources = Sources::new(source.clone());
     let SemanticModel {
@@ -115,8 +116,9 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
         ..
     } = scene::analyze(&sources);
     let of_syntax = diagnostics.iter().filter(|it| it.is_of_syntax);
-    // `check` does not report that an unknown field or kind has no value, only that it is unknown.
-    // If there are no other mistakes, these reports are therefore returned.
+    // A missing value prevents formatting. If its field or kind is unknown, however, `check`
+    // reports only the unknown name. If there are no other mistakes, these reports are returned, so
+    // that the user learns why the text is not formatted.
     let codes = ["pinhole::unknown_field", "pinhole::unknown_kind"];
     let is_unknown = |it: &&Diagnostic| codes.contains(&it.code.as_str());
     let unknown = diagnostics.iter().filter(is_unknown);

@@ -23,9 +23,10 @@ pub enum Before {
     Nothing,
     /// One blank.
     Space,
-    /// A blank, or a line end if the line would be too long. A line is broken at a word with the
-    /// lowest number. The number is 2 for each pair of parentheses around the word, and 1 more for
-    /// the operator of a product, so that sums are broken first.
+    /// A blank, or a line end if the line would be too long. A too long line is broken at a word
+    /// for which the number in `Fold` is lowest. The number is twice the depth of parentheses
+    /// around the word. For the operator of a product, it is greater by 1, so that lines are broken
+    /// in sums first.
     Fold(usize),
     /// A line end.
     Line,

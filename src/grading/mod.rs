@@ -77,9 +77,9 @@ pub struct Reference {
 }
 
 /// Number of bytes per pixel that the computation of the exact picture needs. It is enough for
-/// seven colours of three numbers each. One of them is the exact mean. The other six are two copies
-/// of a mean, the mean's variance, and the variance of a sample. Two copies exist for a short time,
-/// while the moments of the picture are collected.
+/// seven colours of three numbers each: the exact mean; and a mean, its variance, and the variance
+/// of a sample, each of these three twice. Two copies of the three exist for a short time, while
+/// the moments of the picture are collected.
 const BYTES_A_PIXEL: u64 = 7 * size_of::<[f64; 3]>() as u64;
 
 impl fmt::Debug for Reference {

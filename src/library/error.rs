@@ -12,8 +12,8 @@ use crate::{
     schema::UnknownMethod,
 };
 
-/// Why an operation on a scene or a picture failed. Errors of other modules, and those of reading
-/// and writing, are converted to it by `?`.
+/// Why an operation on a scene or a picture failed. Errors of other modules, and input and output
+/// errors, are converted to it by `?`.
 ///
 /// ```
 /// use pinhole::{Method, Scene, film::Film};
@@ -39,7 +39,8 @@ pub enum Error {
     /// The text or the data are not a valid scene. All mistakes are listed.
     #[error(transparent)]
     Mistakes(#[from] Mistakes),
-    /// There is not enough memory for a picture, or no thread can be started.
+    /// A picture cannot be rendered: there is not enough memory, no thread can be started, the area
+    /// to render does not lie in the picture, or the render was cancelled.
     #[error(transparent)]
     Render(#[from] RenderError),
     /// Two pictures have different sizes.

@@ -1,8 +1,8 @@
 //! The library's main types: a text becomes a [`Scene`], and a scene a [`Picture`].
 //!
-//! In: texts, or data that a program has changed. Out: pictures in memory and in files, and
-//! verdicts on pictures of other programs. These types check scenes for mistakes before other
-//! modules work on them. The crate's root exports the types.
+//! A scene is made from a text or from data that a program has changed. A picture is in memory, can
+//! be written to a file, and can be compared with a scene if another program made it. These types
+//! check scenes for mistakes before other modules work on them. The crate's root exports the types.
 
 mod error;
 mod mistakes;

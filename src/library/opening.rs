@@ -1,15 +1,16 @@
-//! Opens scenes from files: from the file of a text, or from a PNG that carries its scene.
+//! Opens scenes from files: from text files, or from PNG files that contain their scene.
 
 use std::{io, path::Path};
 
 use super::{Error, Scene};
 use crate::{
-    files, film,
+    files,
+    film::{self, NotOurs},
     source::{Source, Sources},
 };
 
 impl Scene {
-    /// Reads a scene from the file of its text, or from a PNG that carries it. Mistakes are
+    /// Reads a scene from a text file, or from a PNG file that contains the scene. Mistakes are
     /// reported with the file's path.
     ///
     /// ```
@@ -33,9 +34,10 @@ impl Scene {
         if !bytes.starts_with(&film::SIGNATURE) {
             return Ok(Self::read(Sources::new(Source::from_bytes(name, bytes)))?);
         }
-        let recipe = film::read_recipe(&bytes);
-        let recipe =
-            recipe.map_err(|error| not_read(io::Error::new(io::ErrorKind::InvalidData, error)))?;
+        let recipe = film::read_recipe(&bytes).map_err(|error| match error {
+            NotOurs::NoScene => Error::NoScene,
+            damaged => not_read(io::Error::new(io::ErrorKind::InvalidData, damaged)),
+        })?;
         let text = Source::from_text(name, recipe.scene);
         Ok(Self::read(Sources::new(text).with_sets(recipe.overrides))?)
     }

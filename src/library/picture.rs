@@ -49,7 +49,8 @@ impl Picture {
     }
 
     /// Makes a picture from pixels of another program, row by row from the top, in linear light
-    /// from 0 to 1.
+    /// from 0 to 1. The pixels are judged as precise to 32 bits; for those of 8-bit files, use
+    /// [`from_rgb8`](Self::from_rgb8).
     ///
     /// ```
     /// use pinhole::{Picture, Scene};
@@ -145,7 +146,7 @@ impl Picture {
     }
 
     /// Returns the root mean square of the differences between two pictures, over all pixels and
-    /// channels. It is in linear light and from 0 to 1, or NaN if a value of a pixel is NaN.
+    /// channels, in linear light. It is NaN if a value of a pixel is NaN.
     ///
     /// ```
     /// # let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }

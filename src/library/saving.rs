@@ -17,9 +17,9 @@ impl Picture {
     /// in floats. The program `pinhole` writes the same bytes.
     ///
     /// A PNG does not contain the scene if its text and settings are together longer than
-    /// [`film::TEXT_LIMIT`], or if there are more than [`film::OVERRIDES_LIMIT`] settings. To make
-    /// an equal scene without settings, pass the scene's data to
-    /// [`Scene::from_data`](super::Scene::from_data).
+    /// [`film::TEXT_LIMIT`], or if there are more than [`film::OVERRIDES_LIMIT`] settings. In the
+    /// second case, pass the scene's data to [`Scene::from_data`](super::Scene::from_data), which
+    /// makes an equal scene without settings.
     ///
     /// ```
     /// # let folder = tempfile::tempdir().unwrap();
@@ -64,8 +64,8 @@ impl Picture {
         })
     }
 
-    /// Returns the area that the picture shows, and that of the whole picture. They are equal
-    /// unless the picture was read from a file that says where its part lies.
+    /// Returns the area that the picture shows and the area of the whole picture. They differ only
+    /// if the picture was read from a file that shows a part of a scene and says which part.
     #[cfg(feature = "exr")]
     fn place(&self) -> [Area; 2] {
         let own = Area::whole(self.width(), self.height());

@@ -1,7 +1,7 @@
 //! Caches the scene of one version of a text, and the tracer's data for this scene ([`World`]).
 //!
-//! Both are computed only once for each version. Without the cache, each click on a picture of 100
-//! 000 spheres would first prepare all spheres for tracing.
+//! Both are computed only once for each version. Without the cache, each click on a picture of many
+//! thousand spheres would first prepare all spheres for tracing.
 
 use std::collections::VecDeque;
 

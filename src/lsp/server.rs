@@ -60,7 +60,8 @@ pub struct Server {
     scenes: HashMap<Uri, Option<SceneVersion>>,
     /// For each text that has changed since its scene was built, the scene of the last version
     /// without errors. While the text has errors, this scene is shown by frames whose request sets
-    /// the parameter `last`.
+    /// the parameter `last`. Entries have the same type as in `scenes`, from which they are moved,
+    /// but are never `None`.
     last: HashMap<Uri, Option<SceneVersion>>,
     frames: Frames,
     log: fn(&str),

@@ -133,11 +133,13 @@ impl<T: Real> Ball<T> {
         }
     }
 
-    /// Computes the square root. The number must not be negative, except within its radius.
+    /// Computes the square root. The true number must not be negative. The midpoint may be negative
+    /// by at most the radius.
     #[inline]
     pub fn sqrt(&self) -> Self {
         if !self.is_clear() {
-            // The radius follows from |√a − √b| ≤ √|a − b|.
+            // The number may be 0. The midpoint of the root is 0, and its radius follows from |√a −
+            // √b| ≤ √|a − b|.
             return Self {
                 mid: T::from_f64(0.0),
                 rad: ((self.size() + self.rad) * UP).sqrt() * UP,

@@ -72,9 +72,8 @@ impl Real for Double {
     /// Maximum relative error of one operation: 2^−102. The quotient has the largest error of all
     /// operations, 10u², where u = 2^−53.
     const UNIT: f64 = 1.0 / (1u128 << 102) as f64;
-    /// Maximum absolute error of an operation that underflows: 2^−1022. The true maximum is
-    /// smaller: a product loses a few bits when its factors are split, together a few times
-    /// 2^−1074.
+    /// Upper bound of the absolute error of an operation that underflows: 2^−1022. The error is
+    /// much smaller in fact: splitting the factors of a product loses at most a few times 2^−1074.
     const TINY: f64 = f64::MIN_POSITIVE;
     const LAST: bool = false;
 

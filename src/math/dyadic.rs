@@ -1,9 +1,9 @@
 //! Dyadic numbers: integers times powers of two. Every `f64` is a dyadic number, and so is every
 //! sum, difference and product of dyadic numbers, so that nothing is rounded.
 //!
-//! Dyadic numbers decide the few questions that must not depend on rounding at all: whether the eye
-//! lies in a plane or on a sphere, and whether the up vector is parallel to the view direction. A
-//! decision takes some microseconds.
+//! Dyadic numbers decide the few questions that must not depend on rounding at all, such as whether
+//! the eye lies in a plane or on a sphere, or whether the up vector is parallel to the view
+//! direction. A decision takes some microseconds.
 
 use std::{cmp::Ordering, ops};
 

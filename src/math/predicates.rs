@@ -112,10 +112,10 @@ pub fn box_corners(center: DVec3, size: DVec3) -> (DVec3, DVec3) {
     (corner(-1.0), corner(1.0))
 }
 
-/// Returns `a` + `b`/2, rounded once. Half of a subnormal number may itself need rounding, so the
-/// formula (2a + b)/2 is used. Only the sum is rounded, because a sum that needs rounding is not
-/// subnormal, and halving it is exact. If the sum overflows, a + b/2 is computed instead. Then b/2
-/// is exact, or negligible beside a.
+/// Returns `a` + `b`/2, rounded once. Half of a subnormal number may itself need rounding, so (2a +
+/// b)/2 is computed. If the sum 2a + b needs rounding, it is not subnormal, so halving it is exact.
+/// If the sum overflows, a + b/2 is computed instead: b is then either large enough for b/2 to be
+/// exact, or too small to change a.
 fn offset_by_half(a: f64, b: f64) -> f64 {
     let twice = 2.0 * a + b;
     if twice.is_finite() {
@@ -136,8 +136,8 @@ mod tests {
         assert!(cross_is_zero(DVec3::Y, eye, down));
         let beside = DVec3::new(0.1, -7.0, 0.3_f64.next_up());
         assert!(!cross_is_zero(DVec3::Y, eye, beside));
-        // In `f64`, 1e30 − 0.1 would round to 1e30. The difference of the points must not be
-        // rounded.
+        // The difference of the points must not be rounded. In `f64`, 1e30 − 0.1 and 1e30 − 0.2 are
+        // both 1e30, so the vector between the points would wrongly be parallel to (1, 1, 1).
         let far = DVec3::new(1e30, 1e30, 1e30);
         let near = DVec3::new(0.1, 0.1, 0.2);
         assert!(!cross_is_zero(DVec3::ONE, near, far));
@@ -148,8 +148,8 @@ mod tests {
     #[test]
     fn planes_are_one_or_not_to_the_last_bit() {
         let plane = |normal: [f64; 3], point: [f64; 3]| Plane::across(normal.into(), point.into());
-        // All planes of this case are x + 2y + 3z = 5.25. Small terms must not be lost beside
-        // 10^16.
+        // The plane is x + 2y + 3z = 5.25, given by two of its points. The coordinates of the point
+        // `far` are up to 10^16, but the term 5.25 must not be lost beside them.
         let normal = [1.0, 2.0, 3.0];
         let near = plane(normal, [0.0, 0.0, 1.75]);
         let far = [1e16, -5e15, 1.75];

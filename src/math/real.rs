@@ -86,8 +86,8 @@ impl Real for f64 {
     type Radius = f64;
     /// Maximum relative error of one operation: the unit roundoff, 2^−53.
     const UNIT: f64 = 1.0 / (1u64 << 53) as f64;
-    /// Maximum absolute error of an operation that underflows: 2^−1022, the least normal number.
-    /// The true maximum is smaller, half of the smallest subnormal number, 2^−1075.
+    /// Upper bound of the absolute error of an operation that underflows: 2^−1022, the least normal
+    /// number. The error is in fact at most 2^−1075, half of the smallest subnormal number.
     const TINY: f64 = f64::MIN_POSITIVE;
     const LAST: bool = false;
 
@@ -147,8 +147,8 @@ impl Real for f64 {
     #[inline]
     fn floor(&self) -> (Self, bool) {
         /// Least absolute value at which every `f64` is an even integer: 2^53, because an `f64` has
-        /// a significand of 53 bits. From here on, the number is not converted to an `i64`, into
-        /// which it may not fit.
+        /// a significand of 53 bits. Such a number may not fit into an `i64`, so it is not
+        /// converted to one.
         const ALL_EVEN: f64 = (1u64 << 53) as f64;
         let floor = f64::floor(*self);
         (floor, floor.abs() < ALL_EVEN && floor as i64 & 1 == 1)

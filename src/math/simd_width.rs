@@ -1,11 +1,11 @@
 //! The widths of the SIMD vectors for which loops over plain arrays are compiled.
 //!
 //! A program for all processors of an architecture may only use the vectors that all of them have,
-//! which hold two `f64` on x86-64. The few loops that matter are therefore also compiled for wider
-//! vectors of four numbers (AVX2). Loops that gain 10 % from vectors of eight numbers (AVX-512) are
-//! compiled for these, too. At run time, the program detects once which vectors the processor has.
-//! Vectors of any width compute the same bits: IEEE 754 rounds each sum and each product
-//! separately, and nothing here may fuse two operations into one.
+//! which hold two `f64` on x86-64. The few loops that take most of the time are therefore also
+//! compiled for wider vectors of four numbers (AVX2). Loops that gain 10 % from vectors of eight
+//! numbers (AVX-512) are compiled for these, too. At run time, the program detects once which
+//! vectors the processor has. Vectors of any width compute the same bits: IEEE 754 rounds each sum
+//! and each product separately, and nothing here may fuse two operations into one.
 
 /// Choice of the SIMD vectors that a loop uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,5 +19,6 @@ pub enum SimdWidth {
 }
 
 /// Whether loops are also compiled for wider vectors than every processor of the architecture has.
-/// This is done on x86-64. On other architectures, a second copy would only enlarge the program.
+/// This is done on x86-64. On other architectures, the loops would be compiled a second time for
+/// the same vectors, which would only enlarge the program.
 pub const HAS_WIDER: bool = cfg!(target_arch = "x86_64");

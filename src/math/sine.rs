@@ -8,9 +8,9 @@ use std::{array, ops::Neg, sync::LazyLock};
 
 use super::{Angle, Ball, Big, Double, Real, double::two_product};
 
-/// Maximum absolute value of an angle, in radians, at which its sine and cosine are computed by
-/// series in double-double. For larger angles, [`Big`] computes them, because its π has enough
-/// digits for any angle. The limit is less than 2^20 quarter turns. So the error from the
+/// Maximum absolute value of an angle's part in radians at which the sine and the cosine are
+/// computed by series in double-double. For larger values, [`Big`] computes them, because its π has
+/// enough digits for any angle. The limit is less than 2^20 quarter turns. So the error from the
 /// truncation of π/2 is at most 2^20·2^−163 = 2^−143, which is negligible beside the unit roundoff
 /// of double-double, 2^−102.
 const MAX_RADIANS: f64 = (1u64 << 20) as f64;
@@ -63,7 +63,7 @@ static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
 });
 
 /// Returns the sine and the cosine of an angle. For a multiple of 90°, they are exactly 0 and ±1.
-/// In double-double, they are computed by series if the angle is at most 2^20 radians. Otherwise,
+/// In double-double, they are computed by series if the part in radians is at most 2^20. Otherwise,
 /// they are rounded from a [`Big`].
 pub fn sin_cos<T: Real>(angle: Angle) -> (Ball<T>, Ball<T>) {
     if T::UNIT == Double::UNIT && angle.radians.abs() <= MAX_RADIANS {
@@ -74,9 +74,9 @@ pub fn sin_cos<T: Real>(angle: Angle) -> (Ball<T>, Ball<T>) {
     (Ball::from_big(&sin), Ball::from_big(&cos))
 }
 
-/// Converts a ball of [`Double`] to a ball of `T`, which must be [`Double`], too. The conversion
-/// changes nothing: the two `f64` of a double-double number are already its rounded sum and the
-/// rounding error.
+/// Converts a ball of [`Double`] to a ball of `T` in generic code, where `T` must be [`Double`],
+/// too. The two `f64` of a double-double number are the number rounded to `f64` and the remaining
+/// difference. Adding the two therefore gives the same number again, without rounding.
 fn from_double<T: Real>(x: &Ball<Double>) -> Ball<T> {
     let [hi, lo, rad] = [x.mid.hi, x.mid.lo, x.rad].map(T::from_f64);
     Ball {
@@ -175,12 +175,13 @@ mod tests {
 
     use super::*;
 
-    /// Maximum radius of the ball of a sine or cosine, in units of double-double: for angles in
-    /// degrees, in radians, and with both parts. The values are upper bounds that follow from the
-    /// error rules of [`Ball`]:
+    /// Maximum radius of the ball of a sine or cosine, in units of 2^−102, the unit roundoff of
+    /// double-double. The three values are for angles in degrees, in radians, and with both parts.
+    /// The values are upper bounds that follow from the error rules of [`Ball`]:
     ///
-    /// - Reduced angle r: at most 8 units of r for degrees, and 12·π/4 units for radians.
-    /// - Sine and cosine at |r| = π/4: 19.9 and 19.6 units for degrees, 23.4 and 22.1 for radians.
+    /// - Radius of the reduced angle r: at most 8·|r| units for degrees, and 12·π/4 for radians.
+    /// - Radius of the sine and of the cosine at |r| = π/4: 19.9 and 19.6 units for degrees, 23.4
+    ///   and 22.1 units for radians.
     /// - Angles with both parts, where two products of numbers about √½ are added:
     ///   2 + 2 + 4 + √½·(19.9 + 19.6 + 23.4 + 22.1) = 68.1 units.
     const WIDEST: [f64; 3] = [20.0, 24.0, 69.0];

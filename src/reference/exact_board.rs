@@ -71,9 +71,9 @@ impl ExactBoard {
         (count - 2).max(1)
     }
 
-    /// Divides the polygon into strips along the board's grid lines on which the coordinate with
-    /// the index `family` is an integer. Calls `visit` with each strip and with the integer of its
-    /// first line.
+    /// Divides the polygon into strips, each between two neighbouring grid lines of the board. Only
+    /// the grid lines on which the coordinate with the index `family` is an integer are used. Calls
+    /// `visit` with each strip, and with the integer of the grid line at the strip's start.
     fn strips(&self, family: usize, polygon: Vec<Point>, visit: &mut dyn FnMut(&IBig, Vec<Point>)) {
         let across = &self.across[family];
         let square = |p: &Point| {
@@ -109,7 +109,8 @@ pub fn form([a, b, c]: &[N; 3], [x, y]: &Point) -> N {
     a * x + b * y + c
 }
 
-/// Returns the parts of a convex polygon on which a linear form is negative, and positive.
+/// Divides a convex polygon along the line on which a linear form is zero. Returns the part on
+/// which the form is negative, and the part on which it is positive.
 pub fn split(polygon: &[Point], line: &[N; 3]) -> [Vec<Point>; 2] {
     let mut parts = [Vec::new(), Vec::new()];
     let values: Vec<N> = polygon.iter().map(|p| form(line, p)).collect();

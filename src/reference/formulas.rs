@@ -86,8 +86,8 @@ pub fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
     })
 }
 
-/// Replaces a triangle that is given by its sides by the same triangle, given by its vertices. So
-/// the vertices are not computed again for each ray. Returns other shapes unchanged.
+/// Converts a triangle that is given by its sides to the form with vertices, so that the vertices
+/// are not computed again for each ray. Returns other shapes unchanged.
 pub fn by_vertices(shape: Shape) -> Shape {
     match shape {
         Shape::Triangle(Triangle { outline, color }) => Shape::Triangle(Triangle {
@@ -100,7 +100,8 @@ pub fn by_vertices(shape: Shape) -> Shape {
 
 /// Intersects the line `eye` + t·`d` with a shape. Returns the two values of t, the smaller first;
 /// for a flat shape, they are equal. Returns `None` if the line misses the shape. A triangle is
-/// missed if the absolute value of its determinant is less than `epsilon`.
+/// treated as missed if the absolute value of the determinant of Möller and Trumbore's formula is
+/// less than `epsilon`.
 #[inline(always)]
 pub fn crossings(shape: &Shape, eye: DVec3, d: DVec3, epsilon: f64) -> Option<[f64; 2]> {
     match shape {
@@ -128,8 +129,9 @@ fn sphere(sphere: &Sphere, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
 }
 
 /// Intersects the line `eye` + t·`d` with a box. A box is the intersection of three slabs, each
-/// between two parallel planes. Returns the t at which the line enters the last slab, and the t at
-/// which it leaves the first one. Returns `None` if it leaves before it enters.
+/// between two parallel planes. The line is in the box from the greatest t at which it enters a
+/// slab to the least t at which it leaves one. Returns these two numbers. Returns `None` if the
+/// second is less than the first.
 fn cuboid(cuboid: &Cuboid, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     let inverse = 1.0 / d;
     let a = (cuboid.min - eye) * inverse;

@@ -1,6 +1,6 @@
 //! A tracer that decides by the textbook formulas what is seen at a sample point.
 //!
-//! Ray directions have length 1. A triangle is missed if its determinant is nearly zero. The colour
+//! Ray directions have length 1. A ray that is nearly parallel to a triangle misses it. The colour
 //! of a checkerboard's square depends on whether the sum of the square's two indices is even. This
 //! tracer exists only for comparison with others.
 

@@ -1,4 +1,5 @@
-//! Checks error bounds: no error may exceed its bound, and no bound may be needlessly large.
+//! Checks the error bounds of a computation: no error may exceed its bound, and the largest errors
+//! must come near to theirs, so that the bounds are not needlessly large as a whole.
 //!
 //! A bound adds up the rounding errors of a computation as if each had its greatest possible size
 //! and all had the same sign. With n independent roundings, the actual error is typically smaller

@@ -16,7 +16,7 @@ const BAND_PIXELS: u32 = 1 << 22;
 
 /// Number of pixels above which a picture is rejected unless it would fit into memory. Rendering in
 /// bands does not need that memory, but so large a size is probably mistyped. A poster with sides
-/// of 2^18 pixels, which takes hours to render, has exactly this number.
+/// of 2^18 pixels has exactly this number of pixels, so it is still rendered; this takes hours.
 const MISTYPED: u64 = 1 << 36;
 
 /// Renders a part of the picture as [`render_as_asked`] does, in bands of rows, from the top. Each

@@ -17,8 +17,8 @@ use crate::{
 
 /// Side of the squares of pixels (tiles) that a thread computes at a time, in pixels. Pixels of a
 /// checkerboard are computed in batches of eight similar pixels, and a tile must be large enough to
-/// fill most batches: with half this side, figure 9.9, the picture of the assignment, took 5 %
-/// longer. Tiles must also be small enough that all threads end at about the same time.
+/// fill most batches: with half this side, the scene of `benches/render.rs` took 5 % longer. Tiles
+/// must also be small enough that all threads end at about the same time.
 const TILE: u32 = 2 * GRID;
 
 /// An exactly computed picture, with its error bounds.

@@ -53,8 +53,8 @@ pub struct Control<'a> {
     /// Number of threads. If it is `None`, the process's limit is used or, if there is no limit,
     /// one thread per processor.
     pub threads: Option<NonZero<usize>>,
-    /// Function that is called with the number of samples (or of exact pixels) that were finished
-    /// since its last call. Any thread may call it.
+    /// Function that is called with the number of samples that were finished since its last call.
+    /// In an exact render, it is called with the number of finished pixels. Any thread may call it.
     pub progress: &'a (dyn Fn(u64) + Sync),
     /// Flag that ends the render soon after it is set.
     pub cancel: &'a AtomicBool,

@@ -190,12 +190,13 @@ impl<P: film::Pixel> Renderer<'_, P> {
         } = tally;
         let vectors = match trace {
             Trace::Batched(..) if some.end - some.start >= WIDE_SAMPLES => SimdWidth::Widest,
-            // Wide vectors take longer for few samples, and they would slow down the tracing of
-            // single samples afterwards, so the vectors of the baseline are used.
+            // Otherwise, the positions are computed with the vectors that every processor has. Wide
+            // vectors take longer for few samples, and would also slow down the tracing of samples
+            // one by one that follows.
             _ => SimdWidth::Baseline,
         };
         self.sampling.place(vectors, [x, y], samples, some, points);
-        // Cancellation is checked before every sample, because a single one may take long.
+        // Cancellation is checked before every sample, because tracing one sample may take long.
         let wanted = points.iter().take_while(|_| self.go_on().is_continue());
         match trace {
             Trace::Batched(..) => samples::count(

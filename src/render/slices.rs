@@ -17,15 +17,15 @@ use crate::{
 /// a slice by itself, because pixels are not divided.
 pub const SLICE: u64 = 1 << 20;
 
-/// Number of samples that take as long as one exactly computed pixel. It was measured with figure
-/// 9.9, the picture of the assignment.
+/// Number of samples that take as long as one exactly computed pixel, measured with the scene of
+/// `benches/render.rs`.
 const EXACT_PIXEL_WORK: u64 = 64;
 
 /// A partly rendered picture. It is rendered slice by slice, i.e. square by square.
 #[derive(Debug)]
 pub struct Slices<P> {
     sampling: Sampling,
-    /// The film. Its parts in which no pixel is written yet use no memory.
+    /// The film. The system provides memory for a part of it only when the part is rendered.
     film: Film<P>,
     /// Side of a slice, i.e. of the square that is rendered at a time, in pixels.
     side: u32,

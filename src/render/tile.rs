@@ -30,7 +30,8 @@ impl SampleCounts {
 
 impl<P: Pixel> Tile<P> {
     /// Sets the pixels of a part of the tile in which all samples see the colour `color`. Pixels
-    /// without samples are left as they are. Adds the number of samples to `unreported`.
+    /// without samples are left as they are. Counts the samples in `unreported`, the progress that
+    /// is still to be reported.
     pub(super) fn fill(&mut self, part: Area, color: P) {
         for y in part.y..part.y + part.height {
             let start = self.area.index(part.x, y);

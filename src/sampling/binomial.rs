@@ -30,7 +30,8 @@ pub fn draw(rng: &mut impl Rng, n: u64, part: u64, whole: u64) -> u64 {
         let ones = heads(rng, open);
         rest *= 2;
         if rest < whole {
-            // The digit of p is 0. Trials whose own random digit is 1 are above p and fail.
+            // The digit of p is 0. If the same digit of a trial's random number is 1, the number is
+            // above p, and the trial fails.
             open -= ones;
         } else {
             rest -= whole;
@@ -146,9 +147,10 @@ mod tests {
                 let k = f64::ceil(share * n);
                 let step = ln_weight(k + 1.0, n) - ln_weight(k, n);
                 let expected = libm::log((n - k) / (k + 1.0));
-                // A weight is at most n·ln 2/2 and is computed with a few roundings, so the first
-                // term of `limit` covers its error. The second term covers the next term of
-                // Stirling's series, 1/(1260·k⁵), which changes by less than 1e-13 from k to k + 1.
+                // `limit` bounds the error of `step`. Its first term covers rounding errors: a
+                // weight is at most n·ln 2/2 and is computed with a few roundings. Its second term
+                // covers the first term of Stirling's series that `ln_weight` omits, 1/(1260·k⁵),
+                // which changes by less than 1e-13 from k to k + 1.
                 let limit = 4.0 * f64::EPSILON * n + 1e-13;
                 assert!(
                     (step - expected).abs() < limit,

@@ -17,8 +17,8 @@ pub struct Bricks {
     rows: u64,
     /// Number of cells in a short row: n divided by the number of rows, rounded down.
     short: u64,
-    /// Number of rows that have one cell more than a short row, counted in the upper half of the
-    /// pixel.
+    /// Number of long rows in the upper half of the pixel. A long row has one cell more than a
+    /// short row.
     longer: u64,
 }
 

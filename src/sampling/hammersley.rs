@@ -18,8 +18,9 @@ use super::{
 pub struct Hammersley {
     n: u64,
     columns: Strata,
-    /// The pixel's n columns of width 1/n, stored twice in a row, so that n successive columns can
-    /// be read from any column on. Empty if there are too many to be stored.
+    /// The pixel's n columns of width 1/n, from left to right, and then the same columns again. A
+    /// slice of n columns can therefore start at any column. Empty if there are too many columns to
+    /// be stored.
     turned: Vec<Stratum>,
     /// The coordinate y of each point before the shift, in units of 2^−64; empty if there are too
     /// many to be stored.
@@ -56,8 +57,9 @@ impl Hammersley {
         }
         let least = self.columns.least();
         let place = scale(within, least);
-        // A column has `least` or `least` + 1 possible places. `more`, 0 or 1, is added to `place`
-        // only in a column with `least` + 1 places.
+        // All points get the same place within their columns. In a column of `least` places, this
+        // is the place with the index `place`. A column may also have `least` + 1 places. The index
+        // is then `place` + `more`, where `more` is 0 or 1.
         let more = scale(within, least + 1) - place;
         let turned = &self.turned[(columns + range.start) as usize..];
         for (x, column) in x.iter_mut().zip(turned) {

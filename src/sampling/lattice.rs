@@ -41,8 +41,9 @@ pub fn offset_of_bits(bits: u64) -> f64 {
     offset(bits >> 11)
 }
 
-/// The possible offsets along a pixel's width or height, divided into n equal strata, 1 ≤ n ≤ 2^53.
-/// A place is the index of one of the 2^53 offsets; each stratum contains at least one.
+/// The 2^53 possible offsets along a pixel's width or height, divided into n strata whose numbers
+/// of offsets differ by at most 1; 1 ≤ n ≤ 2^53. An offset is represented by its place, i.e. its
+/// index among all offsets.
 #[derive(Debug)]
 pub struct Strata {
     n: u64,
@@ -53,9 +54,9 @@ pub struct Strata {
     stored: Vec<Stratum>,
 }
 
-/// One of n strata, i.e. equal intervals of the 2^53 possible places along a pixel's side. A
-/// stratum has ⌊2^53/n⌋ places or one more. It is stored as one number: twice its first place, plus
-/// 1 if it has one place more.
+/// One of n strata, i.e. of n intervals into which the 2^53 possible places along a pixel's side
+/// are divided. Each has ⌊2^53/n⌋ places or one more. It is stored as one number: twice its first
+/// place, plus 1 if it has one place more.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stratum(u64);
 
@@ -167,9 +168,9 @@ mod tests {
                     let place = places.start + scale(bits, places.end - places.start);
                     assert_eq!(strata.choose(i, bits), offset(place));
                 }
-                // The offset of place k lies at (2k + 1)/2^54 of the pixel's side. This is inside
-                // of the stratum from i/n to (i + 1)/n for its first and last place, but not for
-                // the places before and after.
+                // The offset with the index k lies at (2k + 1)/2^54 of the pixel's side. The first
+                // and the last offset of the stratum must lie between i/n and (i + 1)/n, and the
+                // offsets before and after them must not.
                 let stratum = |k: u64| (u128::from(2 * k + 1) * u128::from(n)) >> 54;
                 assert_eq!(stratum(places.start), u128::from(i));
                 assert_eq!(stratum(places.end - 1), u128::from(i));

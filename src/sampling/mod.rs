@@ -70,8 +70,9 @@ pub struct Sampling {
     count: u64,
     /// Number of pixels that have one sample more than the minimum number.
     extra: u64,
-    /// Two arrangements of points in a pixel: one of `count` points, and one of `count` + 1. The
-    /// method `scatter` can use either for any number of points.
+    /// Two arrangements of points in a pixel: one of `count` points, and one of `count` + 1. For
+    /// the method `scatter`, both consist of independent random points, of which there can be any
+    /// number.
     patterns: Box<[PointPattern; 2]>,
 }
 
@@ -159,7 +160,8 @@ impl Sampling {
         match self.same_count() {
             Some(count) => vec![count; part.pixels() as usize],
             None if self.method == Method::Scatter => {
-                // The key must differ from those of all pixels. No pixel has the number `u64::MAX`.
+                // The key must differ from the keys of all pixels. No pixel has the number
+                // `u64::MAX`, so this number is used.
                 let key = self.key.part(u64::MAX);
                 scatter::counts(key, self.total, self.picture, part)
             }

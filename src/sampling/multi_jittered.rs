@@ -6,9 +6,9 @@
 //!
 //! For n = a·b points, the grid has a columns and b rows, where b is the greatest divisor of n up
 //! to √n. The point of the cell in column i and row j lies in column i·b + σ(j) of the n columns,
-//! and in row j·a + τ(i) of the n rows. Here σ is a random permutation of the b rows, and τ one of
-//! the a columns. Kensler's method uses the same σ and τ in the whole pixel, unlike the method of
-//! Chiu, Shirley and Wang (1994), on which it is based. If n is prime, b is 1.
+//! and in row j·a + τ(i) of the n rows. Here σ is a random permutation of the b rows, and τ is a
+//! random permutation of the a columns. Kensler's method uses the same σ and τ in the whole pixel,
+//! unlike the method of Chiu, Shirley and Wang (1994), on which it is based. If n is prime, b is 1.
 
 use std::ops::Range;
 
@@ -18,8 +18,9 @@ use super::{
     shuffle::{EMPTY_BUFFER, Shuffle},
 };
 
-/// Number of points that are placed at a time. Most pixels have no more points. A larger number
-/// would take longer, because a buffer of this length is cleared for every pixel.
+/// Number of points that are placed at a time. Most pixels have at most this many points. With a
+/// larger number, small pixels would take longer, because a buffer of this length is cleared for
+/// every pixel.
 const BATCH: usize = 16;
 
 /// A grid of cells in a pixel, and the division of the pixel's sides into n intervals.
@@ -95,7 +96,7 @@ impl MultiJittered {
         let mut index = 2 * start;
         let mut chosen = [[Stratum::default(); BATCH]; 2];
         for (x, y) in x.chunks_mut(BATCH).zip(y.chunks_mut(BATCH)) {
-            // First, the column and the row of each point are found one by one.
+            // First, a column and a row are assigned to each point, one point after the other.
             let [columns, rows] = &mut chosen;
             let mut points = columns.iter_mut().zip(rows).take(x.len());
             while points.len() > 0 {

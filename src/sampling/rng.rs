@@ -121,8 +121,9 @@ pub fn scale_by_parts(bits: u64, n: u64) -> u64 {
     let (high, low) = (bits >> 32, bits & LOW);
     let (n_high, n_low) = (n >> 26 & LOW, n & ((1 << 26) - 1));
     // The product `bits`·`n` is high·n_high·2^58 + high·n_low·2^32 + low·n_high·2^26 + low·n_low.
-    // None of these four products of parts exceeds 2^59. Each shift drops only bits that cannot
-    // change the result.
+    // None of these four products of parts exceeds 2^59. The sum is divided by 2^64 in steps, each
+    // of which rounds down. This gives the same result as rounding down once, because only whole
+    // numbers are added between the steps.
     let rest = low * n_high + ((low * n_low) >> 26);
     let rest = high * n_low + (rest >> 6);
     (high * n_high + (rest >> 26)) >> 6

@@ -7,8 +7,8 @@
 //! distribution.
 //!
 //! The longer side of a rectangle is cut (the width, if both are equal), at the greatest power of
-//! two below its length. Nearly all cuts are therefore into equal halves, for which a draw only
-//! counts random bits. Within its pixel, a point is uniform.
+//! two below its length. Nearly all cuts are therefore into equal halves. A draw for equal halves
+//! only counts random bits. Within its pixel, a point is uniform.
 
 use super::{binomial, rng::Key};
 use crate::area::Area;

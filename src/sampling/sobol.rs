@@ -7,14 +7,14 @@
 //! lies in every aligned rectangle of width 2^−a and height 2^(a−m), for each a from 0 to m. The
 //! same holds for every further block of 2^m points.
 //!
-//! Owen's scrambling flips each bit of a coordinate, or does not, by a random bit that belongs to
-//! the combination of all higher bits. These combinations are the nodes of a binary tree. In a
-//! pixel with n points, no two points agree in the first m = ⌈log₂ n⌉ bits of a coordinate. So
-//! below these bits every point is alone in its subtree, and its further bits are simply
-//! independent random bits. The result is the true scrambling, with m decisions per coordinate
-//! instead of 53. One 64-bit hash decides six levels of the tree. The scrambling of Laine and
-//! Karras by multiplications was not tried: it is known to have weak bits, and it would save no
-//! time for the numbers of points that pictures use.
+//! Owen's scrambling flips some bits of each coordinate. A random bit decides whether a bit is
+//! flipped; there is one random bit for each combination of all higher bits. These combinations are
+//! the nodes of a binary tree. In a pixel with n points, no two points agree in the first m = ⌈log₂
+//! n⌉ bits of a coordinate. Below these m levels, every subtree therefore contains at most one
+//! point, and the point's further bits are simply independent random bits. The result is the true
+//! scrambling, with m decisions per coordinate instead of 53. One 64-bit hash decides six levels of
+//! the tree. The scrambling of Laine and Karras by multiplications was not tried: it is known to
+//! have weak bits, and it would save no time for the numbers of points that pictures use.
 
 use std::ops::Range;
 
@@ -24,9 +24,9 @@ use super::{lattice, rng::Key};
 /// levels have 2^6 − 1 nodes, for which the 64 bits of a hash are just enough.
 const LEVELS: u32 = 6;
 
-/// Maximum number of points whose bits before the scrambling are stored. Such points differ in at
-/// most 12 bits, so that two hashes, of six levels each, scramble a point. For more points, the
-/// bits are computed point by point.
+/// Maximum number of points whose bits before the scrambling are stored. Any two of these points
+/// differ in one of their first 12 bits, so that two hashes, of six levels each, scramble a point.
+/// For more points, the bits are computed point by point.
 const MAX_STORED: u64 = 1 << (2 * LEVELS);
 
 /// The first points of the Sobol' sequence, prepared for scrambling.
@@ -92,9 +92,9 @@ fn at_leaves<const MOST: usize>(axes: &[Owen; 2], tops: &[[u16; 2]], [x, y]: [&m
 }
 
 /// Multiplies the bits of a number by Pascal's triangle modulo 2: bit j of the result is the sum,
-/// over all k, of the binomial coefficient (k over j) times bit k, modulo 2. The coefficient is odd
-/// if all bits of j are also set in k. The positions j and k, from 0 to 63, have six bits, so six
-/// steps are enough: one for each of these bits.
+/// over all k, of the binomial coefficient "k choose j" times bit k, modulo 2. The coefficient is
+/// odd if all bits of j are also set in k. The positions j and k, from 0 to 63, have six bits, so
+/// six steps are enough: one for each of these bits.
 fn pascal(mut bits: u64) -> u64 {
     bits ^= (bits >> 1) & 0x5555_5555_5555_5555;
     bits ^= (bits >> 2) & 0x3333_3333_3333_3333;
@@ -183,9 +183,10 @@ impl Owen {
     }
 }
 
-/// Returns the scrambled value of each combination of `levels` bits. The combinations are the nodes
-/// of a tree. `flips` contains a random bit for each node: bit 1 for the root, bits 2 and 3 for its
-/// children, and so on.
+/// Returns the scrambled value of each combination of `levels` bits. A combination is a path from
+/// the root of a binary tree to a leaf. `flips` contains a random bit for each inner node of the
+/// tree: bit 1 for the root, bits 2 and 3 for its children, and so on. If it is set, the bit of the
+/// path at this node is flipped.
 #[inline(always)]
 fn subtree(flips: u64, levels: u32) -> [u8; 1 << LEVELS] {
     let mut bits = [0; 1 << LEVELS];

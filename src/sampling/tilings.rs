@@ -1,9 +1,9 @@
 //! Divisions of a pixel into n cells such that a sampling method guarantees one sample in each
 //! cell.
 //!
-//! In: a method and the number n of a pixel's samples. Out: the divisions that hold for every seed
-//! and every pixel. They follow from the methods' own files: `bricks` defines the cells of regular
-//! and jittered samples, and `multi_jittered` its grid.
+//! In: a method and the number n of a pixel's samples. Out: the divisions for which this is
+//! guaranteed with every seed and in every pixel. They follow from the methods' own files. For
+//! example, `bricks` defines the cells of regular and jittered samples.
 
 use super::{bricks::Bricks, multi_jittered::MultiJittered};
 use crate::scene::Method;
@@ -37,8 +37,8 @@ impl Tiling {
 }
 
 /// Returns the divisions of a pixel with `n` samples in which a method guarantees one sample per
-/// cell. If the division into n columns or the one into n rows is among them, it comes last.
-/// Returns no divisions if `n` is 0.
+/// cell. The divisions into n columns and into n rows, if they are returned, come last. Returns no
+/// divisions if `n` is 0.
 pub fn tilings(method: Method, n: u64) -> Vec<Tiling> {
     if n == 0 {
         return vec![];
@@ -61,13 +61,13 @@ pub fn tilings(method: Method, n: u64) -> Vec<Tiling> {
         }
         Method::NRooks => vec![columns, rows],
         Method::MultiJittered => vec![MultiJittered::new(n).grid(), columns, rows],
-        // The heights of the points are multiples of 1/n, plus a common shift, only if n is a power
-        // of 2.
+        // If n is a power of 2, the heights of the points are multiples of 1/n, plus a common
+        // shift. Each of n rows then contains one point.
         Method::Hammersley if is_power_of(2) => vec![columns, rows],
         Method::Hammersley => vec![columns],
-        // The points divide x evenly if their number is a power of 2, and y if it is a power of 3.
-        // No grid of several columns and several rows has one point in each cell, because of the
-        // random shift.
+        // Each of n columns contains one point if n is a power of 2, and each of n rows if n is a
+        // power of 3. In a grid of several columns and several rows, a cell may contain no point or
+        // several points, because of the random shift.
         Method::Halton if is_power_of(2) => vec![columns],
         Method::Halton if is_power_of(3) => vec![rows],
         Method::Halton => vec![],

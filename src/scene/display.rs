@@ -3,8 +3,8 @@
 //! The text has a block for each part of the scene, and states every field's value. Numbers are
 //! written with enough digits that reading the text returns exactly the same scene. Most mistakes
 //! of a scene are found by reading its text. Invalid names and numbers that are not finite are
-//! reported while the text is written: the text might describe another scene without any mistake,
-//! or the parser would report something misleading.
+//! reported while the text is written. Reading the text would not do: it might describe another
+//! scene without any mistake, or cause misleading error messages.
 
 use std::{collections::HashSet, fmt, sync::Arc};
 
@@ -202,8 +202,8 @@ impl Writer {
     }
 }
 
-/// Returns whether an object with these indices may have the name. An object that `for` repeats has
-/// its indices in the name, such as `Ball[3, 1]`.
+/// Returns whether an object with the indices `indices` may have the name `name`. An object that
+/// `for` repeats has its indices in the name, such as `Ball[3, 1]`.
 fn is_name(name: &str, indices: &[u32]) -> bool {
     let word = match indices {
         [] => name,

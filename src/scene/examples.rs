@@ -29,7 +29,8 @@ pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -
         TRIANGLE.v2.name,
     ];
     const DIRECTIONS: [&str; 2] = [CAMERA.direction.name, CAMERA.up.name];
-    // Steps from a given point to an example near it, in the order in which they are tried.
+    // Differences between a given point and the examples near it, in the order in which they are
+    // tried.
     const STEPS: [DVec3; 6] = [
         DVec3::NEG_Z,
         DVec3::X,
@@ -45,8 +46,9 @@ pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -
         Value::Vector(point) => Some(point),
         _ => None,
     });
-    // The first step that is tried is −z, the direction in which a camera usually looks, from `eye`
-    // to `lookat`. For an example of `eye`, each step goes from `lookat` in the opposite direction.
+    // Examples are tried at `STEPS` from a given point. The first step is −z, the direction in
+    // which a camera usually looks, i.e. from `eye` to `lookat`. For an example of `eye`, which
+    // lies on the opposite side of `lookat`, the steps are taken in the opposite direction.
     let sign = if field.name == CAMERA.eye.name {
         -1.0
     } else {

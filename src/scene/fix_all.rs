@@ -31,8 +31,7 @@ pub struct Fixed {
     pub waiting: usize,
 }
 
-/// Line and column of the problem, in the text to which the fix was applied. The place in the
-/// original file may differ, because earlier fixes may have changed the lines.
+/// A fix that was applied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Done {
     /// Line and column of the problem in the text to which the fix was applied. Earlier fixes may
@@ -59,7 +58,7 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
     let mut sources = sources.clone();
     let mut problems = read(&sources).diagnostics;
     let mut done = Vec::new();
-    // Problems that remained after their fixes were applied.
+    // Problems that remained although their fixes were applied. These fixes are not applied again.
     let mut staying: HashSet<Problem> = HashSet::new();
     let mut seen = HashSet::new();
     // A fixed text would lose bytes that are not UTF-8, so such a text is not fixed.
@@ -155,7 +154,8 @@ impl Round {
     ) -> Self {
         let may_apply = |fix: &&Fix| fix.applicability <= most;
         let mut edits: Vec<Edit> = Vec::new();
-        // Changed spans: maps the start to the end. No two of them touch.
+        // Spans of the text that this round changes, as a map from a span's start to its end. The
+        // spans do not touch each other.
         let mut taken: BTreeMap<usize, usize> = BTreeMap::new();
         let (mut lengthened, mut done) = (HashMap::<_, Vec<_>>::new(), Vec::new());
         for diagnostic in problems.iter().filter(|problem| problem.is_error()) {

@@ -12,7 +12,7 @@ use crate::{
     syntax::tree::Name,
 };
 
-/// A block with the evaluated fields that it has in the text.
+/// A block, and the evaluated fields that are written in it.
 #[derive(Clone)]
 pub struct LoweredBlock<'s> {
     pub row: &'static BlockRow,

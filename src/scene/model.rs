@@ -48,9 +48,9 @@ pub struct Scene {
 /// The picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Image {
-    /// Columns of pixels, 1 to 2^20.
+    /// Width in pixels, from 1 to 2^20.
     pub width: u32,
-    /// Rows of pixels, 1 to 2^20.
+    /// Height in pixels, from 1 to 2^20.
     pub height: u32,
     /// Colour where no object is hit.
     pub background: Color,
@@ -128,7 +128,8 @@ pub struct Sampler {
     pub seed: u64,
 }
 
-/// Number of samples. For the whole picture, it is at most 2^53.
+/// Number of samples, for each pixel or for the whole picture. The whole picture has at most 2^53
+/// samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Count {
@@ -166,7 +167,8 @@ impl PartialEq for Object {
 }
 
 impl Object {
-    /// Makes an object without a name. Its span is empty, as it stands in no text.
+    /// Makes an object without a name. Its span is empty, because the object does not come from a
+    /// text.
     pub fn new(shape: impl Into<Shape>) -> Self {
         Self {
             name: None,
@@ -176,8 +178,8 @@ impl Object {
         }
     }
 
-    /// Returns the object with a name, which no other object of the scene may have. The object is
-    /// no longer a repetition: it has no indices.
+    /// Returns the object with the name `name`, and without the indices that it has if `for`
+    /// repeats its block. No other object of the scene may have this name.
     #[must_use]
     pub fn named(self, name: impl Into<String>) -> Self {
         Self {

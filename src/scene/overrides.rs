@@ -137,7 +137,7 @@ pub fn add<'s>(
     let mut problems = Problems::default();
     for it in overrides {
         match it.block {
-            // A preceding argument may have added the block.
+            // A preceding argument may have added the block to which this argument belongs.
             _ if it.put_into(items) => {}
             None => problems.push(no_such_let(&it, items, sources, budget)),
             Some(target) if setting(target.text).is_some() => {
@@ -232,7 +232,7 @@ fn field(block: &str, name: &str, items: &[Item<'_>]) -> Option<&'static schema:
 }
 
 /// Returns the row of the image, the camera or the sampler in the language's table. Returns `None`
-/// if `name` is not one of these three keywords. A scene has at most one block of each of them.
+/// if `name` is not one of these three keywords.
 fn setting(name: &str) -> Option<&'static schema::BlockRow> {
     schema::block(name).filter(|row| !row.is_object)
 }
@@ -243,9 +243,9 @@ fn row(block: &Block<'_>) -> Option<&'static schema::BlockRow> {
     schema::block_or_nearest(block.kind?.text)
 }
 
-/// Returns whether a `--set` argument whose block is `target` sets fields of `block`. `target` is
-/// an object's name or, if `setting` is given, the keyword of a block that is no object, such as
-/// `camera`. `setting` is then the schema's row for this keyword.
+/// Returns whether a `--set` argument for `target` sets fields of `block`. If `target` is the
+/// keyword of a block that is not an object, such as `camera`, `setting` is the schema's row for
+/// this keyword. Otherwise, `target` is an object's name.
 fn is_target(block: &Block<'_>, target: &str, setting: Option<&schema::BlockRow>) -> bool {
     match (row(block), setting) {
         (Some(row), Some(setting)) => row.kind == setting.kind,

@@ -80,7 +80,7 @@ pub enum Outside {
     BeforeNear,
     /// Farther than the far plane.
     BeyondFar,
-    /// Left or right of, above or below the window. The text says which.
+    /// Beside the window. The text says on which side: left, right, above or below.
     Beside(&'static str),
 }
 
@@ -99,11 +99,12 @@ impl Outside {
 /// Returns whether samples cannot tell the squares of a visible board apart, so that all squares
 /// get the same colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
-    // If the camera looks straight down or up, its up vector may be parallel to the view direction,
-    // so the directions of the window's sides are unknown. They are then assumed to be x and z, so
-    // the window's extents along x and z are its two sides. For any other directions, both extents
-    // are at least the shorter side, so squares that are lost under this assumption are lost in any
-    // case.
+    // If the camera looks straight down or up, its up vector may be parallel to the view direction.
+    // It is then unknown how the window is turned about the view direction, and its sides are
+    // assumed to be parallel to x and z. The smaller of the window's extents along x and z is then
+    // its shorter side. If the window were turned otherwise, both extents would be at least as
+    // great. If the squares cannot be told apart under the assumption, they therefore cannot be
+    // told apart in any case.
     let straight = || {
         let (from, to) = camera.view.ends(camera.eye);
         let along_y = (to - from).normalize().y.abs() > 1.0 - MARGIN;
@@ -198,8 +199,8 @@ impl Sight {
             && !sides.any(|(_, side)| self.is_beyond(sphere, side, 0.0))
     }
 
-    /// Returns the four sides of the pyramid. For each, returns words for the space beyond the
-    /// side, and the side's unit normal, which points inwards.
+    /// Returns the four sides of the pyramid that the camera sees. For each, returns words for the
+    /// space beyond the side, and the side's unit normal, which points inwards.
     fn sides(&self) -> [(&'static str, DVec3); 4] {
         let [right, top] = self.window;
         let side = |axis: DVec3, sign: f64| {

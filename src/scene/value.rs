@@ -31,7 +31,8 @@ pub fn operate(operator: Operator, left: Value, right: Value) -> Option<Value> {
         (Operator::Divide, Number(a), Number(b)) => Number(a / b),
         (Operator::Divide, Angle(a), Number(b)) => Angle(a / b),
         (Operator::Divide, Angle(a), Angle(b)) => Number(ratio(a, b)),
-        // Dividing each coordinate by b has one rounding error; multiplying by 1/b would have two.
+        // Each coordinate is divided by b, which causes one rounding error. Multiplying by 1/b
+        // would cause two.
         (Operator::Divide, Vector(a), Number(b)) => Vector(DVec3::new(a.x / b, a.y / b, a.z / b)),
         _ => return None,
     })

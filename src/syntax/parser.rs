@@ -217,9 +217,9 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 return (end, true);
             }
             end = item.span().end;
-            // Error recovery reads an item again if it is doubtful or contains `--`, which may
-            // start a comment of another language. An item of at least [`CHUNK_BYTES`] is not
-            // searched for `--`.
+            // An item that was probably meant otherwise (`doubtful`) is read again by error
+            // recovery. So is an item with `--`, which may start a comment of another language; to
+            // bound the work, this is not done for items of [`CHUNK_BYTES`] or more.
             let written = self.written(item.span());
             if self.doubtful || (written.len() < CHUNK_BYTES && written.contains("--")) {
                 match recovery.item_as_meant(start) {

@@ -70,8 +70,8 @@ pub fn parse_in_parts<'s>(
     let count = threads::available().min(parts.len()).min(MOST_THREADS);
     thread::scope(|scope| {
         // Thread i parses the parts i, i + count, i + 2·count and so on, where count is the number
-        // of threads. Its channel holds one result, so the thread runs at most two of its parts
-        // ahead of the consumer.
+        // of threads. Its channel holds one result, so while this result is not taken, the thread
+        // parses one further part and then waits.
         let parsed: Vec<mpsc::Receiver<_>> = (0..count)
             .map(|first| {
                 let (found, results) = mpsc::sync_channel(1);

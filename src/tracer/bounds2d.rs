@@ -4,9 +4,9 @@
 //! inverse depth. The quadtree is built from both. A sphere is bounded by its tangents from the
 //! eye, a triangle or a box by the extremes of its corners.
 //!
-//! The bounds are those of the object's convex hull. They are widened by far more than all rounding
-//! errors, and by more than the smallest difference that the highest precision can distinguish. For
-//! a ray outside of the bounds, every test therefore finds that the ray misses the object.
+//! The bounds are those of the object's convex hull, widened by far more than all rounding errors.
+//! If a ray outside of the bounds were tested against the object itself, the result would therefore
+//! be a miss in every precision.
 
 use super::{
     camera::Camera, convex::Convex, cuboid, interval::Interval, local_form::Patch, object::Object,
@@ -32,16 +32,16 @@ pub struct Extent {
 /// certainly not too tight.
 const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Minimum size of the numbers from which an object's bounds are computed, such as lengths and
-/// products of two lengths. If one is smaller, the object is treated as unbounded. `f64` loses
-/// digits below 1e-308. From 1e-280 on, a result certainly has its full relative precision of
-/// 2^−53.
+/// Minimum absolute value of the numbers from which an object's bounds are computed, such as
+/// lengths and products of two lengths. If one is smaller, the object is treated as unbounded.
+/// `f64` has its full relative precision of 2^−53 only above 1e-308. The minimum is far above this
+/// limit.
 const SMALLEST: f64 = 1e-280;
 
 impl Object<f64> {
-    /// Prepares an object, or only face number `face` of a box, and computes its bounds as seen
-    /// from the eye. The bounds are `None` if the object is certainly not seen in the camera's
-    /// window.
+    /// Prepares an object, or only face number `face` of a box, for the tests against rays. Also
+    /// returns the object's bounds as seen from the eye, or `None` if no ray of the camera can hit
+    /// the object.
     pub fn with_extent(
         double: &Camera<Double>,
         fast: &Camera<f64>,
@@ -69,8 +69,9 @@ impl Object<f64> {
             (Self::Sphere(sphere), ..) => of_sphere(sphere, ahead),
             (_, Some(cuboid), _) => of_corners(&cuboid::corners(fast, cuboid), ahead),
             (_, None, Some(corners)) => of_corners(&corners, ahead),
-            // A checkerboard is infinite, and a triangle seen edge-on has no corners here. Their
-            // bounds are the whole view plane, and only their inverse depth is limited.
+            // A checkerboard is infinite, so it has no corners. Neither has a triangle whose plane
+            // contains the eye: its preparation returns `None`. For these objects, the bounds are
+            // the whole view plane, and only the inverse depth is limited.
             (_, None, None) => Hull::Unbounded,
         };
         let extent = match hull {
@@ -156,7 +157,7 @@ fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
                 ball.rad.to_f64() * UP + middle.abs() * QUOTIENT_SLACK,
             )
         });
-        // NaN is excluded first, since `f64::min` and `f64::max` ignore it.
+        // NaN is excluded here, because `f64::min` and `f64::max`, which are used below, ignore it.
         let is_finite = |range: &Interval| range.low.is_finite() && range.high.is_finite();
         if ![x, y, z].iter().all(is_finite) {
             return Hull::Unbounded;

@@ -38,9 +38,10 @@ fn normalized(v: &Dyadic3) -> [Big; 3] {
     v.each_ref().map(|x| x.to_big().over(&length))
 }
 
-/// Returns a + b, or 0 if the absolute value of the sum does not exceed the errors of a and b, at
-/// most four roundings each. It is used to turn the camera's axes u and v by the roll. With a roll
-/// of 45 degrees, some components are sums of opposite numbers, and must become exactly 0.
+/// Returns a + b, or 0 if the absolute value of the sum does not exceed the errors of a and b. The
+/// error of each is at most four roundings. This sum is used to turn the camera's axes u and v by
+/// the roll. With a roll of 45 degrees, some components are sums of opposite numbers, and must
+/// become exactly 0.
 fn sum(a: &Big, b: &Big) -> Big {
     let sum = a.plus(b);
     let lost = (a.magnitude() + b.magnitude()) * (8.0 * Big::UNIT);
@@ -62,10 +63,10 @@ impl Basis {
     /// Computes the basis of a camera with the view direction f: w = −f/|f|, u = (up × w)/|up × w|,
     /// v = w × u. Then u and v are turned by the roll.
     ///
-    /// Numerators are exact, so u is accurate to the last bits even if up and f are almost
-    /// parallel. If they are parallel, u = (h × up)/|h × up|, where h is the [level
-    /// direction](scene::level_direction). This is the u of a camera that looks along h and has the
-    /// same up.
+    /// The numerators of these quotients are exact, so u is accurate to the last bits even if up
+    /// and f are almost parallel. If they are parallel, u = (h × up)/|h × up|, where h is the
+    /// [level direction](scene::level_direction). This is the u of a camera that looks along h and
+    /// has the same up.
     pub fn new(camera: &scene::Camera, image: &Image) -> Self {
         let forward = view_direction(camera);
         let up = Dyadic::vector(camera.up);
@@ -126,14 +127,14 @@ impl<R: Copy> Window<R> {
 pub struct Camera<T: Real> {
     /// Position of the eye, in world coordinates.
     pub eye: DVec3,
-    /// Binary logarithm of the factor by which lengths of the world are multiplied. It keeps the
-    /// lengths of very large and very small worlds within the range of `f64`; for other worlds it
-    /// is 0.
+    /// Binary logarithm of the factor by which lengths of the world are multiplied. The factor
+    /// keeps the lengths of very large and very small worlds within the range of `f64`. For other
+    /// worlds, it is 1 and its logarithm is 0.
     pub exponent: i32,
     /// Unit vectors to the right, down and ahead, in world coordinates.
     pub axes: [Ball3<T>; 3],
-    /// Distance between the centres of neighbouring pixels, as a difference of X or Y, the first
-    /// two components of a [`Direction`].
+    /// Distance between the centres of neighbouring pixels, measured in X or Y, the first two
+    /// components of a [`Direction`].
     pub pitch: T,
     /// Component Z of all [`Direction`]s.
     pub z: T,
@@ -273,9 +274,9 @@ impl<T: Real> Camera<T> {
 
 /// Range of the binary exponent of the greatest length in a scene. If the exponent is outside of
 /// the range, all lengths are multiplied by a power of two. The squares of lengths from 2^−500 to
-/// 2^400 are well within the range of `f64`, 2^−1022 to 2^1024. The lower end of the range is −300
-/// rather than −500, so that the scene may also contain lengths that are 2^200 times shorter than
-/// the greatest.
+/// 2^400 are between 2^−1000 and 2^800, and so within the range of `f64`, 2^−1022 to 2^1024. The
+/// lower end of the range is −300 rather than −500, so that the scene may also contain lengths that
+/// are 2^200 times shorter than the greatest.
 const LENGTHS: std::ops::RangeInclusive<i32> = -300..=400;
 
 /// Returns the binary logarithm of the factor by which all lengths of a scene are multiplied. The

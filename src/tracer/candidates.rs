@@ -2,10 +2,10 @@
 //!
 //! In: the world, and a rectangle of its view plane. Out: the objects that may be seen in the
 //! rectangle. These are all objects except those that are proved to be hidden, or to be missed by
-//! every ray through the rectangle. The method is interval arithmetic: the range of each object's
-//! linear and quadratic forms over the rectangle, widened by the forms' error bounds. An object
-//! that every ray through the rectangle hits hides every other object whose maximum inverse depth
-//! is below the first object's minimum.
+//! every ray through the rectangle. The method is interval arithmetic. Whether a ray hits an object
+//! depends on linear and quadratic forms of the ray's direction. The range of each form over the
+//! rectangle is computed, and widened by the form's error bound. If every ray through the rectangle
+//! hits an object, every other object that is certainly farther away is hidden.
 
 use glam::DVec2;
 
@@ -26,8 +26,8 @@ use super::{
 pub struct VisibilityCandidate {
     /// The object's index in the file.
     pub object: usize,
-    /// Whether every ray through the part of the picture hits the object between the near and the
-    /// far plane.
+    /// Whether every ray through the considered rectangle of the picture hits the object between
+    /// the near and the far plane.
     pub is_whole: bool,
     /// Interval that contains the inverse depths of all points of the object that may be visible.
     /// An inverse depth is a constant of the camera divided by the depth.
@@ -63,10 +63,13 @@ pub fn narrowed(
 
 /// Replaces `out` by all objects that may be seen in the area `part`, in file order.
 ///
-/// Returns `false` and leaves `out` unchanged if certainly more than `most` objects have bounds
-/// that meet the area, or if `is_worth` returns `false`. The caller can use `is_worth` to reject
-/// areas that show too many objects. The arguments of `is_worth` are the number of objects found
-/// and the mean number of objects whose bounds contain a ray through the area.
+/// Returns `false` and leaves `out` unchanged if the quadtree finds more than four times `most`
+/// list entries for the area. An object has at most four entries, so there are then more than
+/// `most` objects.
+///
+/// Also returns `false` if `is_worth` does. With this function, the caller can reject an area that
+/// shows too many objects. Its first argument is the number of objects found. The second is the
+/// number of the objects' bounds that contain a ray through the area, averaged over all such rays.
 #[must_use]
 pub fn within(
     world: &World,
@@ -129,8 +132,8 @@ fn visible_of(
 ) {
     out.clear();
     let [near, far] = clips_over(world, patch);
-    // `hidden` is the greatest minimum of the inverse depth among the objects that every ray
-    // through the rectangle hits. An object whose maximum inverse depth is below it is hidden.
+    // An object that every ray through the rectangle hits hides all objects whose maximum inverse
+    // depth is below its own minimum. `hidden` is the greatest of these minimums so far.
     let mut hidden = f64::NEG_INFINITY;
     for (object, bounds) in among {
         let Some(mut candidate) = cover(world, object, patch, near, far) else {
@@ -202,9 +205,12 @@ pub(super) fn cover(
     Some(candidate)
 }
 
-/// Removes flat objects of `candidates` that the nearest flat object hides in the whole rectangle
-/// `patch`, although the ranges of their depths overlap. Of parallel layers, only the nearest
-/// remains. Of objects in one plane, only the first in the file remains.
+/// Removes flat objects that another flat object hides in the whole rectangle `patch`. The object
+/// that hides them is the nearest flat one that every ray through the rectangle hits. The ranges of
+/// two objects' inverse depths over the rectangle may overlap although one object is nearer along
+/// every ray, so the objects' planes are compared. Of parallel layers, only the nearest remains. Of
+/// objects in one plane, only the first in the file remains. An object that the near plane may cut
+/// is kept, and hides no other object here.
 fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<VisibilityCandidate>) {
     let is_flat = |candidate: &&VisibilityCandidate| {
         let object = f64::object(&world.geometry, candidate.object);

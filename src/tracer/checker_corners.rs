@@ -3,12 +3,13 @@
 //! In: a block of pixels in which only one board is seen. Out: runs of pixels that show one colour,
 //! and for every other pixel the squares that it shows.
 //!
-//! The picture is divided recursively into quarters. Where only a board is seen, the division
-//! mostly ends at single pixels, and neighbouring pixels share corners. The squares that contain
-//! the corners of a block's pixels are therefore computed row by row in plain arrays, which the
-//! compiler vectorizes. Over a pixel, a ratio of linear forms takes its extremes at the pixel's
-//! corners. A pixel therefore shows only one square if all its corners lie in this square, farther
-//! from the square's edges than the error bound.
+//! Elsewhere, the picture is divided recursively into quarters. Where only a board is seen, this
+//! would mostly go on down to single pixels, and the square at a corner would be computed for each
+//! of the four pixels that share it. The squares at all corners of a block's pixels are therefore
+//! computed first, row by row in plain arrays, which the compiler vectorizes. A coordinate on the
+//! board is a ratio of linear forms, which has its extremes over a pixel at the pixel's corners. A
+//! pixel therefore shows only one square if all its corners lie in this square, farther from the
+//! square's edges than the error bound.
 
 use std::{array, ops::ControlFlow};
 
@@ -58,8 +59,8 @@ pub struct CheckerPixel {
     /// corners is top left, top right, bottom left, bottom right.
     pub(crate) corners: [[f64; 4]; 2],
     /// Whether the pixel's corners certainly lie in the squares `corners`. If not, a corner may lie
-    /// in a neighbouring square. The error bounds of `squares` are then widened to at least the
-    /// corner's distance from the line between the two squares.
+    /// in a square next to the one in `corners`. The error bounds in the field `squares` are then
+    /// so large that they cover the distance of the corner from the line between these two squares.
     pub(crate) is_certain: bool,
 }
 
@@ -96,8 +97,8 @@ pub enum ShownSquares<'a> {
 }
 
 /// Calls `each` with every run of pixels of `part` that shows one colour of the checkerboard
-/// `object`, and with every other pixel, until `each` returns `Break`. Only the board may be seen
-/// in `part`, whose sides are at most [`SIDE`] pixels.
+/// `object`, and with every other pixel, until `each` returns `Break`. The caller ensures that
+/// nothing but the board is seen in `part`, and that its sides are at most [`SIDE`] pixels long.
 ///
 /// Returns `None` if the object is not a checkerboard, or if the board is too far away for its
 /// squares to be distinguished. Otherwise, returns the last result of `each`.
@@ -208,7 +209,8 @@ impl BoardBlock {
     }
 
     /// Calls `each` with the runs of pixels that show one colour, and with the other pixels, in row
-    /// `row`. The row lies between the rows of corners `above` and `below`. Stops if `each` breaks.
+    /// `row`. The row lies between the rows of corners `above` and `below`. Stops if `each` returns
+    /// `Break`.
     fn row(
         &self,
         row: u32,
@@ -273,8 +275,8 @@ impl BoardBlock {
         let [width, height] = [width, height].map(f64::from);
         let local = |block: &LocalForm| {
             let [a, b, c] = block.factors;
-            // The error bound of the block's form is doubled. One half covers the errors of the
-            // factors, the other half the error of the value at the pixel's centre.
+            // The error bound of the block's form is doubled, so that it also covers the rounding
+            // errors of the three factors computed here.
             LocalForm::new([a / width, b / height, a * x + b * y + c], 2.0 * block.rad)
         };
         let CheckerForms { across, below, odd } = &self.squares;
@@ -375,6 +377,7 @@ fn compare_simd(above: &CornerRow, below: &CornerRow, out: &mut [f64; SIDE]) {
 
 /// The position on a checkerboard as ratios of linear forms: x = N₀/ℓ and z = N₁/ℓ, in squares. x
 /// and z rounded down are the indices of a square. `across` contains N₀ and N₁, and `below` is ℓ.
+/// `odd` is `true` if the square with the indices (0, 0) has the second colour.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CheckerForms {
     pub(crate) across: [LocalForm; 2],
@@ -421,7 +424,8 @@ impl CheckerForms {
         let least = self.least()?;
         let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));
         let [x, z] = self.across.each_ref().map(|across| {
-            // A ratio of linear forms takes its extremes at the rectangle's corners.
+            // A ratio of linear forms takes its extremes at the rectangle's corners, so only these
+            // are evaluated.
             let values: [f64; 4] = array::from_fn(|i| {
                 let (x, y) = CORNERS[i];
                 across.at(x, y) * inverse[i]

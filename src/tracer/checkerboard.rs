@@ -5,10 +5,10 @@
 //! coordinate x or z of the crossing, in squares, is then a ratio of linear forms, N/ℓ.
 //!
 //! N is measured from the line between squares that is nearest to the eye, not from the world's
-//! origin. The distance from the origin to this line would make N large and thus less precise. Only
-//! the parity of this distance in squares matters, and it is stored separately. The error of a
-//! ratio follows from the errors of its forms. If the error interval of a ratio contains a whole
-//! number, the colour is uncertain.
+//! origin. If N were measured from the origin, it could be large and thus less precise. Only the
+//! parity of the number of squares between the origin and this line is needed for the colour, and
+//! it is stored separately. The error of a ratio follows from the errors of its forms. If the error
+//! interval of a ratio contains a whole number, the colour is uncertain.
 
 use super::{
     camera::{Camera, Direction, Window},
@@ -48,8 +48,9 @@ pub struct Checkerboard<T: Real> {
 
 /// A checkerboard over a rectangle of the picture: a pixel, a part of one, or several pixels. A
 /// point (x, y) of the rectangle is measured from the rectangle's centre, in units of its sides.
-/// The point shows the position (N₀/ℓ, N₁/ℓ) on the board, in squares from a nearby corner of
-/// squares. N₀, N₁ and ℓ are linear forms in x and y; the board is seen only if ℓ > 0.
+/// The point shows the position (N₀/ℓ, N₁/ℓ) on the board, in squares, measured from a nearby point
+/// where four squares meet. N₀, N₁ and ℓ are linear forms in x and y; the board is seen only if ℓ >
+/// 0.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalBoard {
     /// Factors of x, y and 1 in N₀ and N₁, the numerators of the board's coordinates N₀/ℓ and N₁/ℓ.
@@ -116,13 +117,13 @@ impl<T: Real> Checkerboard<T> {
     }
 
     /// Returns the board over a rectangle of the view plane, as a function of the offset from the
-    /// rectangle's centre. `center` is the direction through the centre. `sides` are the sides of
-    /// the rectangle in X and Y, the units of the offset.
+    /// rectangle's centre. `center` is the direction through the centre. `sides` are the lengths of
+    /// the rectangle's sides in X and Y. An offset is given in units of these lengths.
     pub fn local(&self, center: &Direction<T>, sides: &[T; 2]) -> LocalBoard {
         // A multiple of the denominator ℓ of the board's coordinates is subtracted from their
-        // numerators N₀ and N₁, which moves the origin to a nearby corner of squares. The multiple
-        // makes N₀ and N₁ small at the corner of the rectangle where ℓ is greatest; elsewhere, ℓ
-        // may be almost 0.
+        // numerators N₀ and N₁. This moves the origin to a nearby point where four squares meet.
+        // The multiple makes N₀ and N₁ small at one corner of the rectangle, the corner with the
+        // greatest ℓ. At other corners, ℓ may be almost 0, so a quotient by it would be useless.
         let local = |form: &Form<T>| {
             let [a, b, _] = form.factors();
             let factors = [a.times(&sides[0]), b.times(&sides[1]), form.at(center).mid];
@@ -142,8 +143,9 @@ impl<T: Real> Checkerboard<T> {
             odd ^= times as i64 & 1 == 1;
             let multiple = T::from_f64(times);
             let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&multiple)));
-            // `rad` bounds the error of the denominator ℓ, and is at least 12 roundings of ℓ. The
-            // doubled bound also covers the roundings of the multiple of ℓ and of the subtraction.
+            // `rad` bounds the error of the denominator ℓ, and is large enough for 12 roundings of
+            // ℓ. These are more than occur here: the error of ℓ is multiplied by `times`, and the
+            // product and the difference are rounded. Twice `rad` · |`times`| covers all of this.
             (factors, own_rad + rad * (2.0 * times.abs()))
         });
         let mut forms = [a, b, (below, rad)];

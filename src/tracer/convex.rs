@@ -33,8 +33,8 @@ pub struct Convex<T: Real> {
     forms: Vec<Form<T>>,
     /// Number of the forms that bound the object.
     edges: u8,
-    /// Index in `forms` of the first inverse depth of a face where rays do not first hit the
-    /// object. It is `edges` plus the number of the other faces.
+    /// Number of the forms that bound the object and of the faces where rays first hit it. The
+    /// forms from this index on belong to the other faces.
     firsts: u8,
     /// Numbers that identify the planes of the faces. The faces where rays first hit the object
     /// come before the other faces.
@@ -123,9 +123,8 @@ impl<T: Real> Convex<T> {
     /// A ray on an edge hits the object.
     #[inline]
     pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
-        // In the highest precision, the values of all edge functions may be 0. The object is then
-        // too small, or too nearly edge-on, to be distinguished from nothing, and the ray misses
-        // it.
+        // If the object is very small or almost edge-on, the values of all its edge functions may
+        // be 0 even in the highest precision. The ray then misses the object.
         let (mut doubt, mut is_met) = (false, self.is_inside || self.edges == 0);
         for edge in self.edges() {
             match edge.at(r).sign() {
@@ -163,9 +162,9 @@ impl<T: Real> Convex<T> {
     /// inverse depth, or with the greatest if `which` is `Greater`. `start` is the index of the
     /// first of `faces` among all faces. Returns `None` if there are no faces.
     ///
-    /// If the two extreme inverse depths differ by no more than their errors, the crossing is
-    /// assigned to an edge, not to a plane. Its inverse depth may then be wrong by at most the
-    /// larger of the two errors.
+    /// If another plane's inverse depth differs from the result by no more than the errors of the
+    /// two, the crossing is assigned to an edge, not to a plane. The error bound of its inverse
+    /// depth is then the larger of the two error bounds.
     #[inline]
     fn extreme(
         &self,

@@ -1,4 +1,4 @@
-//! The box: six faces along the axes.
+//! The box: six faces, each perpendicular to an axis of the world.
 //!
 //! In: the box's corners and the camera. Out: a [`Convex`] object, and its corners. A point of a
 //! ray is λr relative to the eye, where r is the ray's direction. With μ = 1/λ, the point lies
@@ -18,8 +18,9 @@ use crate::{
     scene,
 };
 
-/// Prepares a box, or only its face `only` as a flat object. The number of a face's plane is twice
-/// the number of its axis, plus one for the greater coordinate.
+/// Prepares a box, or only its face `only` as a flat object. The number of a face is twice the
+/// number of the axis to which it is perpendicular, plus one if it is the face at the greater
+/// coordinate.
 pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<u8>) -> Convex<T> {
     let (mut fronts, mut backs, mut edges) = (Vec::new(), Vec::new(), Vec::new());
     for plane in 0..6_u8 {
@@ -56,8 +57,9 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
         return Convex::new(edges, fronts, backs);
     };
     // A ray enters the box through the farthest of the front planes, and leaves it through the
-    // nearest of the back planes. A front face is therefore bounded by comparisons of its plane
-    // with the other front planes, and a back face by comparisons with the other back planes.
+    // nearest of the back planes. It therefore meets a front face only where the face's plane is
+    // farther than the other front planes, and a back face only where the plane is nearer than the
+    // other back planes. Each of these comparisons becomes an edge of the face.
     for (mut faces, is_nearest) in [(fronts, false), (backs, true)] {
         let Some(at) = faces.iter().position(|(number, _)| *number == only) else {
             continue;

@@ -3,9 +3,9 @@
 //! In: the surfaces of objects in one precision, and a [`SubPixel`]. Out: the objects' silhouettes,
 //! and the curves where their depths are equal, in the coordinates of the sub-pixel.
 //!
-//! The silhouette of a sphere is a conic. Two planes have equal inverse depths on a line. A plane
-//! and a sphere have equal inverse depths on the cone of rays through a circle. Two spheres have
-//! equal inverse depths in their radical plane.
+//! In the picture, the silhouette of a sphere is a conic, and two planes have equal inverse depths
+//! on a line. A plane and a sphere intersect in a circle, which the picture shows as a conic. Two
+//! spheres also intersect in a circle, which lies in their radical plane.
 //!
 //! Each form is computed anew in the sub-pixel's coordinates and in high precision, with an error
 //! bound for its values there. The result is therefore right to the last bits of an `f64`, however
@@ -79,8 +79,7 @@ type Quadratic<T> = [Ball<T>; 6];
 pub struct SubPixelFrame<T: Real> {
     /// The direction (X, Y, Z) through the sub-pixel's centre.
     center: Ball3<T>,
-    /// Side of the sub-pixel, as a difference of X or Y, the first two components of a ray's
-    /// direction.
+    /// Side of the sub-pixel, measured in X or Y, the first two components of a ray's direction.
     pitch: Ball<T>,
 }
 
@@ -88,8 +87,9 @@ impl<T: Real> SubPixelFrame<T> {
     /// Places a sub-pixel in the view plane of a camera.
     pub fn new(camera: &Camera<T>, sub_pixel: SubPixel) -> Self {
         let r = sub_pixel.middle(camera);
-        // A coordinate of the direction is computed with five roundings, and the side with fewer.
-        // An error bound of eight roundings therefore covers both.
+        // The components of the direction are computed with five roundings each, and the
+        // sub-pixel's side with fewer. An error bound of eight roundings is therefore enough for
+        // all of these numbers.
         let ball = |mid: T| Ball {
             rad: mid.magnitude() * (8.0 * T::UNIT) + T::TINY,
             mid,
@@ -123,9 +123,9 @@ impl<T: Real> SubPixelFrame<T> {
         // ray's direction. The line is c·r = 0.
         //
         // If the eye is outside, the conic has two branches, one in front of the eye and one behind
-        // it. The line lies between the branches, and no ray on the line hits the sphere. If the
-        // sphere is a plane to a relative precision of about 1e-200, no precision distinguishes the
-        // two branches.
+        // it. The line lies between the branches, and no ray on the line hits the sphere. An
+        // exception is a sphere that differs from a plane by a relative amount of only about
+        // 1e-200. Even the highest precision does not distinguish its branches.
         let (c, square) = sphere.parts();
         let ahead = || line_of(&self.along(&c));
         if sphere.is_at_eye() {
@@ -152,9 +152,9 @@ impl<T: Real> SubPixelFrame<T> {
             | (InverseDepth::Sphere(sphere), InverseDepth::Plane(plane)) => {
                 let (c, square) = sphere.parts();
                 let (factors, rad) = self.local(plane);
-                // The factors of the plane are converted to the sphere's unit of inverse depth,
-                // which is a power of two. Its exponent is used, because the inverse of the
-                // sphere's scale may exceed the range of `f64`.
+                // The factors of the plane are converted to the sphere's unit of inverse depth. The
+                // unit is a power of two, so only its exponent is needed. The unit itself is the
+                // inverse of the sphere's scale, and may exceed the range of `f64`.
                 let exponent = -(libm::frexp(sphere.scale()).1 - 1);
                 let linear = factors.map(|mid| Ball { mid, rad }.scaled(exponent));
                 Some(self.circle(&c, &square, &linear, &Ball::exact(1.0)))
@@ -166,9 +166,9 @@ impl<T: Real> SubPixelFrame<T> {
     /// Returns the curve of rays that hit two spheres at equal depths. Returns `None` for
     /// concentric spheres.
     fn spheres(&self, a: &Sphere<T>, b: &Sphere<T>) -> Option<Boundary> {
-        // The curve lies in the radical plane of the spheres. For a point q of this plane, |q − c|²
-        // − R² is equal for both spheres, with the centre c and the radius R of each. With c and c'
-        // the two centres, and C = c·c − R² of each sphere, it follows that
+        // Let c be the centre of one sphere, R its radius, and C = c·c − R². Let c', R' and C' be
+        // the same for the other sphere. The curve lies in the radical plane of the spheres. Every
+        // point q of this plane satisfies |q − c|² − R² = |q − c'|² − R'². It follows that
         //
         // 2 (c' − c)·q = C' − C.
         let ((c, square), (d, other)) = (a.parts(), b.parts());
@@ -201,7 +201,7 @@ impl<T: Real> SubPixelFrame<T> {
         // |h r − (n·r) c|² = R² (n·r)².
         //
         // The left side is a sum of squares that are small near the circle. The formula therefore
-        // does not cancel if the sphere is small and far away.
+        // loses no digits by cancellation if the sphere is small and far away.
         let r = self.directions();
         let offsets = [0, 1, 2].map(|i| [0, 1, 2].map(|k| h * &r[i][k] - &c[i] * &plane[k]));
         let outside = sum(offsets.each_ref().map(|x| product(x, x)));
@@ -237,13 +237,13 @@ fn line_of<T: Real>(linear: &Linear<T>) -> Boundary {
     line(&factors, linear[0].rad + linear[1].rad + linear[2].rad)
 }
 
-/// Returns the line on which a linear form is zero. The form is divided by its greater slope. Forms
-/// of one line, such as the horizon of parallel planes, therefore get equal factors.
+/// Returns the line on which a linear form is zero. The form is divided by its greater slope.
+/// Different forms that are zero on the same line, such as the horizon of parallel planes,
+/// therefore get equal factors.
 fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let [a, b, _] = factors;
     let greatest = if a.magnitude() < b.magnitude() { b } else { a };
-    // If the form has no slope, it is constant and has no zero line. Its scale then does not
-    // matter.
+    // If the form has no slope, it is constant and has no zero line. Any divisor will then do.
     let exponent = -greatest.magnitude().exponent();
     let greatest = greatest.scaled(exponent);
     let slope = if greatest.is_zero() {
@@ -254,7 +254,8 @@ fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let factors = factors
         .each_ref()
         .map(|x| x.scaled(exponent).over(&slope).to_f64());
-    // Maximum relative rounding error of the quotients, and of their conversion to `f64`.
+    // Maximum relative rounding error of the line's factors: each is a quotient by the greater
+    // slope, converted to `f64`.
     let unit = f64::UNIT + 8.0 * T::UNIT;
     let rounding = unit * (factors[0].abs() + factors[1].abs() + factors[2].abs());
     // The error bound covers the roundings of the quotient, and the rounding of the slope to `f64`.
@@ -328,8 +329,9 @@ impl Conic {
         if gradient > 0.0 {
             area = area.min(16.0 * self.rad / gradient);
         }
-        // The rounding errors of the determinant are subtracted, so that the bound is certainly
-        // large enough. They are at most two roundings of its products.
+        // The rounding errors of the determinant are subtracted from it, so that the bound on the
+        // area is certainly large enough. They are at most two roundings for each of the
+        // determinant's two products.
         let determinant = determinant - 4.0 * f64::UNIT * (a * c).abs().max(b * b);
         if determinant > 0.0 {
             area = area.min(7.0 * self.rad / determinant.sqrt());
@@ -340,9 +342,9 @@ impl Conic {
     /// Returns an interval that contains the values of the conic's form over the pixel.
     pub fn over_pixel(&self) -> Interval {
         // Extremes lie at corners, or where the derivative vanishes along a side or in all
-        // directions. An extreme may be computed at an inaccurate position. This hardly matters,
-        // because the form differs there by half the product of the distance and the gradient,
-        // which is almost 0.
+        // directions. An extreme may be computed at an inaccurate position. This hardly matters:
+        // the gradient is almost 0 near an extreme, so the form's value at this position is almost
+        // the extreme value.
         let [a, b, c, d, e, f] = self.factors.map(|factor| factor.hi);
         let at = |x: f64, y: f64| x * (a * x + 2.0 * (b * y + d)) + y * (c * y + 2.0 * e) + f;
         let mut range = Interval {

@@ -1,4 +1,4 @@
-//! Linear forms: the boundaries and inverse depths of everything flat.
+//! Linear forms: the edges and inverse depths of flat surfaces.
 //!
 //! In: a vector in the camera's axes. Out: the linear form aX + bY + c over the view plane that the
 //! vector defines. Every edge of a flat surface is a line on which such a form is zero, and the
@@ -23,9 +23,9 @@ pub struct Form<T: Real> {
     rads: Option<Box<[T::Radius; 3]>>,
 }
 
-/// Number of roundings in the computation of a linear form's value ([`Form`]). There are 5 in a
-/// coordinate, 1 in its product with a factor, and 2 in the sum. The total is 8; the value 12
-/// leaves room for products of rounding errors.
+/// Number of roundings in the computation of a linear form's value ([`Form`]). A coordinate of the
+/// ray's direction is computed with 5 roundings. Its product with a factor adds 1, and the sum of
+/// the products adds 2. The total is 8; the value 12 leaves room for products of rounding errors.
 const FORM_ROUNDINGS: f64 = 12.0;
 
 impl<T: Real> Form<T> {

@@ -16,7 +16,8 @@ pub struct Interval {
 pub struct Cover {
     /// Whether every ray through the rectangle hits the object.
     pub is_whole: bool,
-    /// Interval that contains the inverse depths of all crossings with the object, seen or hidden.
+    /// Interval that contains the inverse depths of all crossings with the object, including those
+    /// that another object hides.
     pub inverse_depth: Interval,
 }
 
@@ -74,9 +75,9 @@ impl Interval {
         !(self.low > 0.0 || self.high < 0.0)
     }
 
-    /// Returns an interval that contains the greatest (or the least) of several numbers, one from
-    /// each interval of `ranges`. `which` is `f64::max` for the greatest and `f64::min` for the
-    /// least. Returns `None` if `ranges` is empty.
+    /// Returns an interval that contains the greatest (or the least) of several numbers. Each of
+    /// these numbers lies in one interval of `ranges`. `which` is `f64::max` for the greatest and
+    /// `f64::min` for the least. Returns `None` if `ranges` is empty.
     pub fn fold(ranges: impl Iterator<Item = Self>, which: fn(f64, f64) -> f64) -> Option<Self> {
         // An interval with a NaN end is first replaced by the interval of all numbers, because
         // `f64::max` and `f64::min` ignore NaN.

@@ -18,19 +18,18 @@ use crate::{
 };
 
 /// Upper bound of the rounding error of a [`LocalForm`]'s value, divided by the sum of the absolute
-/// values of the form's factors. The value is four roundings: one for each factor, one for the
-/// factor's division by the error bound ([`LocalForm::line`]), and two for the products and sums of
-/// the evaluation. Two are enough for these, because offsets are at most ½, so a product is at most
+/// values of the form's factors. The value is four roundings: one for a factor itself, one for its
+/// division by the error bound ([`LocalForm::line`]), and two for the products and sums of the
+/// evaluation. Two are enough for these, because offsets are at most ½, so a product is at most
 /// half of its factor.
 const LINEAR_ROUNDING: f64 = 4.0 * f64::UNIT;
 /// Upper bound of the rounding error of a [`LocalQuadratic`]'s value, divided by the sum of the
-/// absolute values of the form's factors. The value is 16 roundings. Five of them cover the
-/// roundings of each factor, relative to this factor. The others cover the roundings of products
-/// and sums in the evaluation.
+/// absolute values of the form's factors. The value is 16 roundings: at most five in the
+/// computation of a factor, and at most eleven in the products and sums of the evaluation.
 pub const LOCAL_ROUNDING: f64 = 16.0 * f64::UNIT;
 /// Error bound for underflow in the evaluation of a form, which has at most 16 products. If a
 /// product is below the normal numbers of `f64`, its error is at most half of the least positive
-/// number.
+/// number, and so less than `TINY`.
 const UNDERFLOW_ERROR: f64 = 16.0 * f64::TINY;
 
 /// A rectangle of the view plane.
@@ -38,8 +37,8 @@ const UNDERFLOW_ERROR: f64 = 16.0 * f64::TINY;
 pub struct Patch {
     /// The direction through the rectangle's centre.
     pub center: Direction<f64>,
-    /// Width and height of the rectangle, as differences of X and Y, the first two components of a
-    /// ray's direction.
+    /// Width and height of the rectangle, measured in X and Y, the first two components of a ray's
+    /// direction.
     pub sides: [f64; 2],
 }
 

@@ -1,9 +1,9 @@
 //! The objects near a small part of the picture, selected by their bounds alone.
 //!
 //! In: a part with so many objects that it would take too long to find out exactly where each is
-//! seen. Out: the objects that rays through the part may hit, the nearest first, or those of them
-//! that rays through a single pixel may hit. One search of the quadtree for all rays of the part
-//! takes less time than a search for each ray.
+//! seen. Out: the objects that rays through the part may hit, the nearest first. A second function
+//! selects from them the objects that rays through a single pixel may hit. One search of the
+//! quadtree for all rays of the part takes less time than a search for each ray.
 
 use super::{
     candidates,

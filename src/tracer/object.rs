@@ -38,8 +38,8 @@ pub enum SurfaceKind<'a, T: Real> {
 pub enum Object<T: Real> {
     /// A sphere.
     Sphere(Sphere<T>),
-    /// A triangle, a box, or one face of a box. If the eye lies in the plane of a triangle or of a
-    /// single face, it cannot be seen, and its list of faces is empty.
+    /// A triangle, a box, or one face of a box. A triangle or a single face is invisible if its
+    /// plane contains the eye; its list of faces is then empty.
     Convex(Convex<T>),
     /// A checkerboard.
     Checkerboard(Box<Checkerboard<T>>),

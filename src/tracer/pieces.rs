@@ -1,9 +1,9 @@
-//! Division of boxes with coloured faces into their faces.
+//! Division of boxes with coloured faces into single faces.
 //!
-//! In: a scene. Out: a new scene in which every box with coloured faces is replaced by those of its
-//! faces that may be seen, and the index of the original object for each new object. The tracer
-//! treats each face as a flat object. Two faces that share an edge compute exactly the same line
-//! for the edge, so that no ray passes between them.
+//! In: a scene. Out: a new scene, in which the visible faces of each such box replace the box; and
+//! for each object of the new scene, the index of its original object. The tracer treats each face
+//! as a flat object. Two faces that share an edge compute exactly the same line for the edge, so
+//! that no ray passes between them.
 
 use std::{array, borrow::Cow, sync::Arc};
 

@@ -38,8 +38,9 @@ pub struct Hit {
 
 /// Traces the ray through the point `pixels` of the picture plane, given in pixels from the
 /// picture's top left corner. Returns the ray's direction, of length 1, and all crossings in front
-/// of the eye, the nearest first. Crossings at the same depth are in file order. The point must be
-/// within the `reach` of [`World::for_rays`].
+/// of the eye, the nearest first. Crossings at the same depth are in file order. The point must not
+/// be farther from the picture's centre than the `reach` with which [`World::for_rays`] has
+/// prepared `world`.
 pub fn ray(world: &World, pixels: DVec2) -> (DVec3, Vec<Hit>) {
     let camera = &world.geometry.big.camera;
     let point = camera.picture_point(pixels);

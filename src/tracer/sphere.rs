@@ -114,9 +114,9 @@ impl<T: Real> Sphere<T> {
         let m = cx.times(&r.y).minus(&cy.times(&r.x));
         let cross = k.times(&k).plus(&l.times(&l)).plus(&m.times(&m));
         let (rad_q, rad_b) = if T::LAST {
-            // No higher precision can resolve a doubt of the highest one. Its error bounds are
-            // therefore computed for this ray alone. In the middle of the widest views, they are
-            // far smaller than the bounds for the whole window.
+            // In the highest precision, the error bounds are computed for this ray alone, because
+            // no higher precision could decide an uncertain case. In the middle of the widest
+            // views, these bounds are far smaller than the bounds for the whole window.
             radii::<T>(
                 self.center.each_ref().map(Real::magnitude),
                 self.rad_c,
@@ -264,8 +264,9 @@ impl Sphere<f64> {
         //
         // 1/λ = r·r/(b + √Q) = (√Q − b)/(−C),
         //
-        // falls as b grows. If b may be ≤ 0 and the eye is inside, the second formula gives the
-        // upper bound.
+        // falls as b grows. If b may be ≤ 0, the first formula gives no upper bound, because the
+        // least possible denominator may be 0 or negative. If the eye is inside the sphere, the
+        // second formula then gives the upper bound. Otherwise, the upper bound is infinite.
         let reach = |i: usize, at: f64| {
             let half = 0.5 * patch.sides[i];
             (at.abs() + half, (at.abs() - half).max(0.0))
@@ -296,12 +297,12 @@ impl Sphere<f64> {
     /// the discriminant of the equation for a ray's crossings, and the scalar product of the
     /// sphere's centre and the ray's direction ([`Sphere`]).
     pub fn local(&self, patch: &Patch) -> (LocalQuadratic, LocalForm) {
-        // Factor by which the error bound of Q is multiplied to bound the errors of Q's local form.
+        // Factor by which the error bound of Q is multiplied to bound the error of Q's local form.
         // Q is a quarter of the discriminant of the equation for a ray's crossings ([`Sphere`]).
         // The factors of the local form consist of the same products as Q, and the rectangle lies
-        // within the window. Eight times Q's error bound therefore covers their errors: once for
-        // the value at the centre, twice for each of the two gradients, and once for each of the
-        // three second derivatives.
+        // within the window. Eight times Q's error bound therefore covers the errors of all factors
+        // together: once for the value at the centre, twice for each of the two first derivatives,
+        // and once for each of the three second derivatives.
         const TIMES: f64 = 8.0;
         let [cx, cy, cz] = self.center;
         let (r, [width, height]) = (&patch.center, patch.sides);

@@ -33,7 +33,7 @@ impl SubPixel {
         }
     }
 
-    /// Returns the four quarters.
+    /// Returns the four quarters of the part.
     pub fn quarters(self) -> [Self; 4] {
         [(-0.25, -0.25), (0.25, -0.25), (-0.25, 0.25), (0.25, 0.25)].map(|(x, y)| Self {
             center: self.offset(DVec2::new(x, y)),

@@ -61,7 +61,7 @@ impl SceneGenerator {
                 DVec3::splat(size.x),
                 self.within(0.0, 360.0),
             ),
-            // A triangle in a plane that contains the eye, and that is about parallel to the rays.
+            // A triangle in a plane that contains the eye, so that it is seen edge-on.
             2 => triangle(
                 eye + dvec3(1.0, 0.0, -2.0),
                 dvec3(0.0, 1.0, 0.0),
@@ -150,8 +150,8 @@ fn the_quadtree_changes_nothing() {
         let scene = random.scene(3 + seed as usize * 4);
         let world = World::new(&scene);
         let mut points: Vec<_> = (0..150).map(|_| random.point()).collect();
-        // The samples include points on the edges of the objects' bounds, within the last bits of
-        // their coordinates.
+        // The samples include points on the edges of the objects' bounds, or a few roundings away
+        // from these edges.
         for Extent { across, .. } in extents(&world, &scene).into_iter().flatten() {
             for _ in 0..2 {
                 let [x, y] = across.map(|range| match random.below(3) {
@@ -173,7 +173,7 @@ fn the_quadtree_changes_nothing() {
 
 /// Checks that `f64` alone decides every one of many random samples, because a higher precision
 /// takes a hundred times as long. In the second scene, two objects lie in one plane. `f64` leaves
-/// samples undecided only in the rows at the horizon, about 1e-10 of them, so none is expected
+/// at most about 1e-10 of all samples undecided, in the rows at the horizon, so none is expected
 /// here.
 #[test]
 fn f64_alone_decides_nearly_everything() {
@@ -238,8 +238,9 @@ fn what_a_ray_meets_is_within_bounds() {
 
 #[test]
 fn bounds_are_tight() {
-    // At the height of the eye, rays hit the left and right ends of a sphere whose centre is at
-    // this height, and the left and right corners of a box.
+    // All tested rays lie in the horizontal plane through the eye. They reach the leftmost and the
+    // rightmost points of each shape's picture, because the spheres' centres lie in this plane, and
+    // the box's vertical edges cross it.
     for shape in [
         sphere(dvec3(0.4, 0.0, -8.0), 0.5),
         sphere(dvec3(-2.0, 0.0, -8.0), 1e-6),
@@ -357,7 +358,7 @@ fn very_many_objects() {
         let mut object = template.clone();
         object.shape = sphere(dvec3(x, y, -1.0) * depth, radius * depth);
         if let Shape::Sphere(sphere) = &mut object.shape {
-            // Each sphere has its own colour.
+            // Each sphere has its own colour, so that a wrong object is noticed.
             sphere.color.srgb[0] = f64::from(index) / 256.0;
         }
         objects.push(object);

@@ -61,8 +61,8 @@ fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> B
             return normal;
         }
     }
-    // Vertices may be so far away that the first hundreds of bits of their directions from the eye
-    // are equal. The normal is then computed exactly.
+    // If vertices are very far away, their directions from the eye may agree in hundreds of binary
+    // digits. The normal is then computed exactly.
     let [a, b] = [a, b].map(|corner| Dyadic::between(camera.eye, corner));
     let normal = Dyadic::cross(&a, &b).map(|x| Ball::<Big>::from_big(&x.to_big()));
     camera.turned(&scaled_to_one(&normal).map(|x| Ball::from_big(&x.mid)))
@@ -136,8 +136,8 @@ struct SeenPlane<T: Real> {
     normal: Ball3<T>,
     height: Ball<T>,
     /// Side of the plane on which the eye lies: the sign of n·q for a point q of the plane,
-    /// relative to the eye. The normal n is the given one, before it is divided by its greatest
-    /// component.
+    /// relative to the eye. Here, n is the normal before it is divided by its greatest component,
+    /// because the division may reverse it.
     side: Ordering,
 }
 
@@ -216,9 +216,9 @@ fn offsets<T: Real>(shape: &CenteredTriangle) -> [Ball3<T>; 3] {
     })
 }
 
-/// Returns two perpendicular unit vectors in the plane with the normal n: to the right, (Y × n)/|Y
-/// × n|, and to the top, n/|n| times the first vector. Y is the y axis; if n is parallel to the y
-/// axis, Y is (0, 0, −1).
+/// Returns two perpendicular unit vectors in the plane with the normal n. The first, to the right,
+/// is (Y × n)/|Y × n|. The second, to the top, is n/|n| × the first. Y is the y axis; if n is
+/// parallel to the y axis, Y is (0, 0, −1).
 fn plane_axes<T: Real>(normal: DVec3) -> (Ball3<T>, Ball3<T>) {
     let [x, y, z] = normal.to_array();
     let (zero, one) = (Ball::exact(0.0), Ball::exact(1.0));

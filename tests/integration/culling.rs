@@ -143,8 +143,8 @@ fn culling_is_exact_for_scenes_full_of_ties(effort: Effort) {
 }
 
 /// Renders thousands of overlapping triangles. Half of them lie in a tilted plane, and half in the
-/// plane of the checkerboard. One of the scenes has more triangles than the tracer can cache in its
-/// type for precise numbers.
+/// plane of the checkerboard. One of the scenes has more triangles than the tracer's cache of
+/// objects in high precision can keep.
 #[test]
 fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     let mut random = Random::new(141);

@@ -287,3 +287,19 @@ fn what_cannot_be_drawn_is_told_with_a_way_out() {
     }
     assert_eq!(folder.names(), ["a.scn", "b.scn", "camera.svg", "roll.svg"]);
 }
+
+/// A pixel with several colours is found wherever in the picture it is.
+#[test]
+fn the_whole_picture_is_searched_for_a_pixel_with_an_edge() {
+    for (width, height) in [(160, 90), (100, 60), (400, 179), (128, 77), (65, 91)] {
+        // The picture is 4 high in the plane of the box, which is seen in its lower right corner.
+        let aspect = f64::from(width) / f64::from(height);
+        let (x, y) = (2.0 * aspect - 0.07, -2.0 + 0.07);
+        let scene = read(&format!(
+            "image {{ width {width} height {height} }} camera {{ eye (0, 0, 10) lookat (0, 0, 0) d 10 view_height 4 }}
+            box {{ center ({x}, {y}, 0) size (0.1, 0.1, 0.1) }}"
+        ));
+        let svg = figure(&scene, Kind::Pixel, Choice::default()).unwrap();
+        assert!(svg.contains("box ("), "{width} × {height}: {svg}");
+    }
+}

@@ -341,9 +341,9 @@ fn random_scenes_render_alike_in_parts_and_agree_with_samples() {
         let Rendered::Exact(exact) = assert_parts_agree(&computed, random, &text) else {
             panic!("not computed");
         };
-        // In an optimized build on an idle machine, a pixel takes at most two seconds, because it
-        // is computed twice: for the whole picture, and for one of the four parts. The limit of 20
-        // seconds allows for slower builds and busy machines.
+        // In an optimized build on an idle machine, the exact means of a pixel take at most two
+        // seconds. (The pixel is computed twice: for the whole picture, and for one of the four
+        // parts.) The limit of 20 seconds allows for slower builds and busy machines.
         let (time, pixels) = (start.elapsed(), whole(&scene).pixels() as u32);
         assert!(time < pixels * Duration::from_secs(20), "{time:?}: {text}");
         if is_comparable(&scene) {

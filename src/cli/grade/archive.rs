@@ -16,17 +16,18 @@ use zip::{DateTime, ZipArchive, result::ZipError};
 use crate::{files, lock::lock};
 
 /// Maximum length, in bytes, of a file that is unpacked from a zip file or compared with the files
-/// of other students. A longer file is an error. 256 MiB is also the maximum for pictures without
-/// `--large`, so no usual picture exceeds it.
+/// of other students. A longer file is an error. The value is the maximum length of a picture
+/// without `--large`, so a smaller limit would reject pictures that are accepted outside of zip
+/// files.
 pub const FILE_LIMIT: u64 = 256 << 20;
 
 /// Maximum number of entries of a zip file. A zip file with more is rejected. Chosen without
 /// measurement: a class of some hundred students hands in far fewer files.
 const MOST_ENTRIES: usize = 10_000;
 
-/// Maximum number of bytes that are read from a zip file to list its entries. An entry takes 46
-/// bytes plus its name, so 16 MiB suffice for [`MOST_ENTRIES`] entries with names of a thousand
-/// letters. Without a limit, a damaged file could fill the memory.
+/// Maximum number of bytes that are read from a zip file to list its entries. The list stores 46
+/// bytes and a name for each entry, so 16 MiB suffice for [`MOST_ENTRIES`] entries with names of a
+/// thousand letters. Without a limit, a damaged file could fill the memory.
 const LIST_LIMIT: u64 = 16 << 20;
 
 /// Maximum number of bytes, in total, that are unpacked from all zip files of a class. It stops zip

@@ -77,8 +77,8 @@ impl Class {
         Ok(class)
     }
 
-    /// Adds the students of a folder or zip file. It may also contain folders of whole classes; the
-    /// students of these classes are added, too.
+    /// Adds the students in the folder or zip file `tree`. If it contains folders of whole classes,
+    /// adds the students of these classes, too.
     fn add(&mut self, folder: Option<String>, mut tree: FileTree, chosen: Option<&Glob>) {
         for (name, inner) in tree.take_classes() {
             self.add(Some(name), inner, chosen);
@@ -93,8 +93,8 @@ impl Class {
         let slug = folder.and_then(|name| name.strip_suffix(names::CLONES).map(str::to_owned));
         tree.found.sort_by(|(a, _), (b, _)| a.cmp(b));
         let mut works: BTreeMap<(String, String), Student> = BTreeMap::new();
-        // A student with an empty folder must be listed, too, so the folders are added to the
-        // files.
+        // A student with an empty folder must be listed, too, so the students' folders are added to
+        // the list of files.
         let folders = tree.folders.iter().filter(|names| names.len() == 1);
         let folders = folders.map(|names| (vec![names[0].clone(), String::new()], None));
         let found = tree
@@ -159,9 +159,10 @@ impl Class {
         self.students.extend(students);
     }
 
-    /// Finds the files that are equal in every submission, since they come from the assignment's
-    /// template. Pictures among them are marked as not compared; other files are removed. If no
-    /// student has any other picture, all students made the same one, so it is kept and compared.
+    /// Excludes files of the assignment's template. A file that is equal in every submission comes
+    /// from the template. If it is a picture, it is kept in the list, but marked so that it is not
+    /// judged; otherwise, it is removed. However, if no student has another picture, the equal
+    /// pictures are judged, since all students may have rendered the same picture.
     fn leave_template(&self, students: &mut [Student], chosen: Option<&Glob>) {
         let is_folder = |student: &&mut Student| {
             let mut files = student.files.iter();
@@ -291,19 +292,21 @@ fn with_companions(students: Vec<Student>) -> Vec<Student> {
     kept
 }
 
-/// Finds the arguments that a shell expanded from a pattern such as `class/*`. Returns each folder
-/// that contains a class. The names of its students come with it: the arguments that lie in this
-/// folder.
+/// Finds the arguments that a shell expanded from a pattern such as `class/*`, where `class` is a
+/// folder with the submissions of a class. Returns these folders. Each is mapped to the names of
+/// the arguments that lie directly in it.
 ///
-/// A folder contains a class if one of its arguments is a Git clone, has a name in Moodle's form,
-/// or is Gradescope's metadata file, or if two of its arguments contain pictures of the same name.
+/// The parent folder of an argument is taken for such a folder in three cases: the argument is a
+/// Git clone; its name is in Moodle's form or that of Gradescope's metadata file; or another
+/// argument in the same folder contains a picture of the same name.
 fn expanded_classes(paths: &[PathBuf]) -> BTreeMap<&Path, BTreeSet<&OsStr>> {
     let mut named = BTreeMap::<&Path, BTreeSet<&OsStr>>::new();
     for path in paths {
         let is_list = name(path) == METADATA && path.is_file();
         let is_class = path.is_dir() || tree::is_zip(path) || is_list;
-        // Links are excluded: a link on the command line is followed, but a link inside a class's
-        // folder would not be. Paths such as `..` are excluded, too, because they have no name.
+        // The folders found here are listed later without following the links in them. A link on
+        // the command line must be followed, so it is left out here and read as a folder of its
+        // own. Paths such as `..` are left out, too, because they have no name.
         if is_class && !path.is_symlink() && !name(path).is_empty() {
             named.entry(parent_of(path)).or_default().insert(name(path));
         }

@@ -25,8 +25,8 @@ pub struct GradedStudent {
     /// Names of the other students whose best picture equals this student's best picture in every
     /// pixel.
     pub equal_to: Vec<String>,
-    /// The student's points. `None` without `--points`, and if the picture is wrong for unknown
-    /// reasons.
+    /// The student's points. `None` without `--points`, if no picture was judged, or if the picture
+    /// is wrong for unknown reasons.
     pub score: Option<f64>,
 }
 
@@ -44,7 +44,8 @@ pub struct JudgedPicture {
     pub verdict: Verdict,
     /// Root mean square of the differences from the exact picture, in linear light.
     pub rmse: f64,
-    /// Whether the file contains the text that Pinhole writes into its own pictures.
+    /// Whether the file contains the scene that Pinhole stores in its pictures. If so, Pinhole
+    /// rendered the picture, not the student's program.
     pub is_ours: bool,
     /// Fields of the verdict in the JSON output.
     pub fields: Map<String, Value>,
@@ -76,8 +77,9 @@ impl JudgedPicture {
 }
 
 impl ComparedPicture {
-    /// Returns the sort key of a picture. The student's picture with the smallest key is graded: a
-    /// right one if there is one, otherwise the one with the smallest error.
+    /// Returns the sort key of a picture. The student's picture with the smallest key is graded.
+    /// The order of verdicts is right, noise, wrong, unknown; an unreadable picture comes last.
+    /// Among pictures with the same verdict, the one with the smallest error comes first.
     pub fn rank(&self) -> (u8, f64) {
         let Ok(judged) = &self.result else {
             return (4, 0.0);

@@ -18,8 +18,8 @@ use crate::{
 /// object, is a test in Gradescope.
 ///
 /// Without `--points`, each test is worth one point. With `--points`, only the whole submission has
-/// a score, and the tests pass or fail: one mistake may cost more points than its test has, so the
-/// points of the tests would not add up to the score.
+/// a score, and the tests pass or fail without points. If the tests had points, a mistake could
+/// cost more points than its test is worth, and the points would not add up to the score.
 ///
 /// If the picture is wrong for unknown reasons, no scores are written, so that the teacher decides.
 pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>) -> Value {

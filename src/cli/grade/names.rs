@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 pub const CLONES: &str = "-submissions";
 
 /// Parts of a file or folder name in Moodle's form, `Name_12345_assignsubmission_file_essay.pdf`:
-/// the student's name, the submission's number, and the file's own name, which is empty for a
-/// folder.
+/// the student's name, the submission's number, and the name under which the student submitted the
+/// file. The last part is empty for a folder.
 #[derive(Debug)]
 pub struct MoodleName<'n> {
     pub name: &'n str,

@@ -18,8 +18,9 @@ const SCRIPT: &str = include_str!("page.js");
 /// Path of the scene's exact picture, relative to the HTML page.
 pub const EXACT: &str = "pictures/exact.png";
 
-/// Returns the paths of three pictures of the student with this index: the submitted one, the heat
-/// map of its differences, and the exact picture of the same part of the scene.
+/// Returns the paths of three pictures of the student with this index: the submitted picture, the
+/// heat map that shows how it differs from the exact picture, and the exact picture of the same
+/// part of the scene.
 pub fn names(index: usize) -> [String; 3] {
     ["", "-difference", "-exact"].map(|what| format!("pictures/{}{what}.png", index + 1))
 }
@@ -136,8 +137,8 @@ fn headings(total: Option<f64>) -> String {
         format!("<th scope=\"col\" aria-sort=\"none\"><button type=\"button\">{name}</button></th>")
     };
     let all: Vec<String> = sorted.map(heading).collect();
-    // On the page, the column of pictures comes right after the column of students, so its heading
-    // is inserted after the first one.
+    // On the page, the column of pictures comes right after the column of students, so the heading
+    // `picture` is inserted after the first heading.
     format!(
         "{}<th scope=\"col\">picture</th>{}",
         all[0],

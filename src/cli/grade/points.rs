@@ -24,8 +24,9 @@ const OTHERS: &str = "*";
 pub struct PointScheme {
     /// Points for a right picture.
     pub total: f64,
-    /// Points that a wrong object costs, however many mistakes it has. A mistake that is listed in
-    /// `mistakes` costs the points given there instead.
+    /// Points that an object costs in total for all its mistakes that `mistakes` does not list by
+    /// id. A mistake that is listed costs the points given there, in addition. If `None`, each
+    /// unlisted mistake of an object costs the points of [`OTHERS`].
     object: Option<f64>,
     /// Points that each mistake costs, by the mistake's id. The key [`OTHERS`] gives the points of
     /// the ids that are not listed.

@@ -16,9 +16,9 @@ use crate::cli::{
 /// store times in units of two seconds, so equal times may differ by up to two seconds.
 const SAME_TIME: i64 = 2;
 
-/// Maximum number of a student's pictures that are compared if several are equally new. The others
-/// are listed as not compared. Chosen so that one student with very many pictures does not delay
-/// the grading of a class.
+/// Maximum number of a student's pictures that are judged if several are equally new. Further
+/// pictures are only listed. Chosen so that one student with very many pictures does not delay the
+/// grading of a class.
 const MOST_PICTURES: usize = 12;
 
 /// A student's submission.

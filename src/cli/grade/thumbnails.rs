@@ -12,9 +12,11 @@ const LONGEST: u32 = 320;
 
 /// The pictures of a student that the HTML page shows.
 pub struct Pictures {
-    /// Thumbnails of the student's picture and of the heat map of its differences, as `data:` URIs.
+    /// Thumbnails of the student's picture and of the heat map that shows its differences from the
+    /// exact picture, as `data:` URIs.
     pub thumbnails: [String; 2],
-    /// The student's picture and the heat map of its differences, as PNG files.
+    /// The student's picture and the heat map that shows its differences from the exact picture, as
+    /// PNG files.
     pub whole: [Vec<u8>; 2],
     /// The exact picture of the part of the scene that the student's picture shows, as a PNG file.
     /// `None` if the picture shows the whole scene.

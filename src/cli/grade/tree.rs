@@ -41,14 +41,14 @@ pub type FoundFile = (Vec<String>, SubmittedFile);
 /// The files in a folder and its subfolders, or in a zip file.
 #[derive(Debug, Default)]
 pub struct FileTree {
-    /// The folder or zip file on the command line, with a `/` at its end.
+    /// Path of the folder or zip file on the command line, as it is printed, with a `/` at its end.
     pub place: String,
     pub found: Vec<FoundFile>,
     /// The folders, including empty ones, down to depth [`NAMED`]. Each is a path as a list of
     /// names, relative to `place`.
     pub folders: BTreeSet<Vec<String>>,
     /// The folders that are Git repositories. Each is a path as a list of names, relative to
-    /// `place`.
+    /// `place`. A repository deeper than [`NAMED`] is represented by its ancestor at this depth.
     pub clones: BTreeSet<Vec<String>>,
 }
 
@@ -203,8 +203,8 @@ impl FileTree {
     fn unpack(&mut self, path: &Path, before: &[String]) -> Result<(), String> {
         let (archive, entries) = Archive::open(path)?;
         let archive = Arc::new(archive);
-        // The zip file counts as a folder, so that its student is listed even if it contains no
-        // files.
+        // The zip file is recorded like a folder, so that its student is listed even if it contains
+        // no files.
         self.add_folder(before);
         for entry in entries {
             // The names are never used as paths, so `..` can simply be dropped.
@@ -260,9 +260,11 @@ impl FileTree {
     }
 
     /// Removes the folders that contain whole classes from the tree, and returns them with their
-    /// names. A folder contains a class if Gradescope's metadata file is in it, if all names in it
-    /// are in Moodle's form, or if it contains Git repositories and its name ends in
-    /// `-submissions`, as GitHub Classroom makes it.
+    /// names. A folder contains a class in each of these cases:
+    ///
+    /// - Gradescope's metadata file is in it.
+    /// - All names in it are in Moodle's form.
+    /// - It contains Git repositories, and its name ends in `-submissions`, as in GitHub Classroom.
     pub fn take_classes(&mut self) -> Vec<(String, Self)> {
         let files = self.found.iter().map(|(names, _)| names);
         let mut inner = BTreeMap::<&str, Vec<&str>>::new();
@@ -329,8 +331,8 @@ pub fn is_zip(path: &Path) -> bool {
     ending.is_some_and(|ending| ending.eq_ignore_ascii_case("zip")) && path.is_file()
 }
 
-/// Returns whether a file or folder is skipped because of its name. Hidden names, which begin with
-/// a dot, are skipped, and so are those of files that operating systems create.
+/// Returns whether a file or folder is skipped because of its name: if the name begins with a dot,
+/// i.e. is hidden, or if operating systems create files of this name.
 fn is_passed_over(name: &str) -> bool {
     const NAMES: [&str; 3] = ["__MACOSX", "Thumbs.db", "desktop.ini"];
     name.starts_with('.') || NAMES.iter().any(|own| name.eq_ignore_ascii_case(own))

@@ -132,10 +132,10 @@ fn errors(analysis: &Analysis<'_>) -> usize {
 mod tests {
     use super::*;
 
-    /// Searches two texts for the greatest valid n up to 14. In the first text, 14 is tried. The
-    /// second text has five indices with the count n, so n = 14 would make 14^5 objects, half a
-    /// million. This trial is too expensive and is not made, so the budget `left` stays at
-    /// [`BYTES`].
+    /// Searches two texts for the greatest valid n up to 14, with the result 14 in both cases. In
+    /// the first text, the change to 14 is tried, which reduces the budget `left`. The second text
+    /// has five indices with the count n, so n = 14 would make 14^5 objects, half a million. This
+    /// trial would be too expensive: 14 is accepted untried, and `left` stays at [`BYTES`].
     #[test]
     fn a_count_is_not_tried_where_it_would_make_very_many_objects() {
         let heads = [

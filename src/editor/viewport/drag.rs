@@ -65,7 +65,8 @@ pub struct Dragged {
 }
 
 /// Returns the text of a scene in which the blocks of all objects except `object` are replaced by
-/// blanks. All offsets stay the same, but the text is analyzed faster.
+/// blanks. If `object` is `None`, this is done with all objects, as for a drag of the camera. All
+/// offsets stay the same, but the text is analyzed faster.
 pub fn alone(sources: &Sources, scene: &Scene, object: Option<usize>) -> Sources {
     let source = &sources.file;
     let mut text = String::with_capacity(source.text().len());
@@ -410,9 +411,10 @@ impl DragView<'_> {
         Some(((-9..=12).find(is_small)?, step))
     }
 
-    /// Returns whether the states `ideal` and `found` of the dragged object or camera look alike,
-    /// i.e. whether each handle is at the same place within `tolerance` pixels. Handles far outside
-    /// of the picture are ignored, except the dragged one.
+    /// Returns whether the states `ideal` and `found` of the dragged object or camera are both
+    /// possible and look alike, i.e. whether all points that [`Self::marks`] returns for them are
+    /// at the same places within `tolerance` pixels. Points far outside of the picture are ignored,
+    /// except those that the pointer drags.
     fn agree(&self, ideal: FieldOwner, found: FieldOwner, tolerance: f64) -> bool {
         // A length that was rounded to few digits may have become 0, which the language forbids.
         // Such a result is rejected even if it looks alike.
@@ -431,8 +433,12 @@ impl DragView<'_> {
         })
     }
 
-    /// Returns the points of the picture by which two states of the object or camera are compared.
-    /// Each point has a flag that says whether the pointer drags it.
+    /// Returns the points of the picture by which two states of the dragged object or camera are
+    /// compared. For the camera, they are the images of `self.points`; for a checkerboard, the
+    /// images of the board's points above or below `self.points`; for another object, its handles.
+    /// A point is `None` if the eye cannot see it, for example because it is behind the eye. The
+    /// flag of each point says whether the pointer drags it; a camera and a checkerboard are
+    /// dragged by all their points.
     fn marks(&self, owner: FieldOwner) -> Vec<(bool, Option<DVec2>)> {
         let points = self.points.iter();
         match owner {

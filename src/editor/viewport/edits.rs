@@ -158,9 +158,9 @@ impl DecimalRounding {
     fn number(&self, from: f64, by: f64) -> f64 {
         let decimals = self.decimals;
         if self.exact.contains(&by.abs()) {
-            // The amount was rounded to `decimals` already. If its ratio in [`RATIOS`] is 1/2, it
-            // has one decimal more. So the sum keeps `decimals` + 1 decimals, and all decimals of
-            // `from`.
+            // The amount was rounded to `decimals` already. If it was computed as half of another
+            // rounded amount, it has one decimal more. So the sum keeps `decimals` + 1 decimals,
+            // and all decimals of `from`.
             let [own, more] = [decimals_of(from), decimals.saturating_add(1)];
             return round(from + by, own.max(more));
         }

@@ -26,10 +26,9 @@ const TEST_DISTANCE: f64 = 2.0;
 /// farther apart.
 const MOST_TESTS: f64 = 1000.0;
 
-/// Number of points on the outlines of checkerboards that are tested in one picture. Once this
-/// number is reached, the remaining outlines are drawn as if nothing hid them, which bounds the
-/// time of an answer. Each side of an outline has at most [`MOST_TESTS`] points, so the four sides
-/// of two boards are always tested.
+/// Number of tested points on the outlines of checkerboards after which the remaining outlines of a
+/// picture are drawn as if nothing hid them. This bounds the time of an answer. Each side of an
+/// outline has at most [`MOST_TESTS`] points, so the four sides of two boards are always tested.
 const MOST_TESTS_IN_ALL: f64 = 8000.0;
 
 /// Maximum number of objects whose outlines are drawn over a picture. Nobody can tell more outlines
@@ -118,8 +117,9 @@ pub fn overlays(scene: &Scene, which: &ShownObjects) -> Overlays {
     });
     let cut = |depth: f64| {
         let boards = objects().filter_map(|(_, object)| object.shape.checkerboard());
-        // At depth 0, the plane is parallel to the view plane and contains the eye, so it is not
-        // visible. The division then yields infinity or NaN, for which `level` returns no line.
+        // A near or far plane cuts each checkerboard along a line. At depth 0, such a plane
+        // contains the eye, so the line is not visible. The division then yields infinity or NaN,
+        // for which `level` returns no line.
         let lines = boards
             .filter_map(|&Checkerboard { y, .. }| projection.level((y - camera.eye.y) / depth));
         lines.take(MOST_OBJECTS).collect()

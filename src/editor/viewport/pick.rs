@@ -14,8 +14,8 @@ use crate::{
 };
 
 /// Maximum number of samples of a pixel that [`samples`] returns, to limit the length of the answer
-/// to the editor. Any further samples are left out: a drawing of one pixel cannot show more than 65
-/// 536 points separately.
+/// to the editor. Further samples are left out, since a drawing of one pixel could not show more
+/// points separately.
 pub const MOST_SAMPLES: u64 = 1 << 16;
 
 /// Maximum number of samples per pixel with which [`samples`] renders a pixel. For more samples, an

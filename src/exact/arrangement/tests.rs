@@ -1,5 +1,5 @@
-//! Compares the computed fraction of a pixel's area that a triangle covers, and its error bound,
-//! with the area of a polygon that is computed with hundreds of bits of precision.
+//! Checks the fraction of a pixel's area that a triangle covers, and its error bound. The reference
+//! is the area of the part of the pixel inside the triangle, computed in multiple precision.
 
 use std::cell::RefCell;
 

@@ -6,8 +6,8 @@
 //!
 //! In: the function X of an edge, and the point where the edge crosses its first line. Out: the
 //! alternating sum Σ (−1)^j·X over the crossings j, with a bound on truncation and rounding errors.
-//! The compiler vectorises the sum. It is divided into blocks of consecutive crossings, each of
-//! which uses as few terms of X as its depth allows.
+//! The compiler vectorises the sum. It is divided into blocks of consecutive crossings. Far from
+//! the eye, the terms of X decrease faster, so blocks there use fewer terms.
 
 use super::homography::{BoundedSum, UNIT};
 use super::special::{reduce_double, waves};
@@ -17,9 +17,9 @@ use std::f64::consts::PI;
 use multiversion::multiversion;
 
 /// Maximum number of terms of the series ([`EdgeSeries`]) by which a checkerboard is integrated
-/// along an edge. The error bound includes the omitted terms. The series is used only at distances
-/// of 18 squares (`NEAR_SQUARES`) and more; nearer squares are integrated one by one. With 20
-/// terms, the bound therefore contains the factor 22!/2·(18π)⁻²⁰, about 5e-15.
+/// along an edge. The error bound includes the omitted terms. Squares nearer than 18 squares
+/// (`NEAR_SQUARES`) are integrated one by one, without the series. At greater distances, the bound
+/// of the omitted terms is proportional to 22!/2·(18π)⁻²⁰, about 5e-15.
 pub(super) const MAX_TERMS: usize = 20;
 /// Upper limit on the number of blocks into which the sum over an edge's crossings is divided. The
 /// truncation error of each block is limited to the tolerance divided by this number, so that the
@@ -147,12 +147,13 @@ impl LineCrossings {
             let (terms, left) = series.terms_for(depth, count, limit);
             let block = block(self, series, terms, [done, count]);
             sum.value += if done % 2.0 == 0.0 { block } else { -block };
-            // The error of the coordinate t is at most two unit roundoffs, plus three unit
-            // roundoffs times the distance from the start of the chunk. This distance is half a
-            // chunk on average. The slope of the series X is at most π times the bound of X, so the
-            // error of X is at most the error of t times π times this bound. The factor 4 of
-            // `reach` covers these errors with a margin. A term of X has 14 roundings of its own,
-            // derived in `green`. The running sum of a lane has one rounding for each number added.
+            // The rounding errors, in unit roundoffs, consist of three parts. First, the coordinate
+            // t has an error of at most 2, plus 3 for each crossing since t was last computed in
+            // double-double. The mean of this error over the block is at most 4·`reach`. The slope
+            // of X is at most π times the bound `series.size` of X, so an error of t causes at most
+            // π times as large an error of X, relative to this bound. Second, a term of X has 14
+            // roundings of its own, derived in `green`. Third, each of the `LANES` running sums has
+            // one rounding for each number added.
             let reach = 2.0 + 0.5 * count.min(CHUNK as f64);
             let added = count / LANES as f64 + 4.0;
             let rounding = UNIT * series.size(1, depth) * (added + 16.0 + 4.0 * PI * reach);

@@ -9,9 +9,9 @@
 //! forms that map the picture to the board ([`Homography`]).
 //!
 //! In the formulas, (a, b) is a point of the board's plane, in squares, and s is the square wave, 1
-//! and −1 in turn from square to square. A unit of the plane at the depth m covers K/m³ square
-//! pixels, where K is a constant ([`Homography`]). n is the number of terms after which a series is
-//! truncated.
+//! and −1 in turn from square to square. One unit of the plane's area at the depth m covers K/m³
+//! square pixels, where K is a constant ([`Homography`]). n is the number of terms after which a
+//! series is truncated.
 //!
 //! With the periodic Euler polynomials A_k of [`waves`] and J = K/m³, the sum
 //!
@@ -86,9 +86,9 @@ const ONLY_FINITE_TAIL: f64 = 1.0;
 /// exceed the tolerance.
 const MIN_SHARE: f64 = 1.0 / 64.0;
 
-/// Table of (k + 1)!/2, with the index k. At the depth m, a unit of the floor covers K/m³ square
-/// pixels, where K is a constant ([`Homography`]). The k-th derivative of K/m³ with respect to m is
-/// ±K·(k + 2)!/2·m^(−3−k), which uses the entry k + 1. The series ([`EdgeSeries`]) and the
+/// Table of (k + 1)!/2, with the index k. At the depth m, one unit of the floor's area covers K/m³
+/// square pixels, where K is a constant ([`Homography`]). The k-th derivative of K/m³ with respect
+/// to m is ±K·(k + 2)!/2·m^(−3−k), which uses the entry k + 1. The series ([`EdgeSeries`]) and the
 /// potential ([`potential`]) consist of such derivatives.
 pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
     let mut all = [0.5; MAX_TERMS + 2];
@@ -212,7 +212,7 @@ fn terms(
 /// Returns the potential and the floor's density at a corner of a polygon. The differences of the
 /// potential between the ends of the edges are part of the polygon's integral. The potential is a
 /// sum over derivatives of order 0 to `terms` − 1. The density is in square pixels per square of
-/// the board. The rounding error of the potential is proportional to it.
+/// the board. The rounding error of the potential is proportional to the density.
 fn potential(board: &Homography, corner: &Corner, terms: usize) -> (f64, f64) {
     match terms {
         0..=2 => potential_of::<2, 4>(board, corner, terms),

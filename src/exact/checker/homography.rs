@@ -22,10 +22,10 @@ pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
 /// treated as singular, and the error bound covers the whole polygon.
 const MIN_DETERMINANT: f64 = 1e-100;
 
-/// Maximum displacement of the horizon by rounding errors, in pixels, at which corners are moved.
+/// Maximum displacement of squares by rounding errors, in pixels, up to which corners may be moved.
 /// [`Homography::corner`] moves a corner onto the horizon if their distance may be only a rounding
-/// error. With a larger displacement, no corner is moved. The error bound includes the move; a move
-/// of this length adds about a hundredth of the default tolerance to it.
+/// error. If squares may be displaced further, no corner is moved, because the move would increase
+/// the error bound too much. At the maximum, it adds about a hundredth of the default tolerance.
 const MAX_HORIZON_DISPLACEMENT: f64 = 1e-11;
 
 /// An integral of a checkerboard's sign (1 on squares of one colour, −1 on the others), and a bound
@@ -44,7 +44,8 @@ pub(in crate::exact) struct BoundedSum {
 /// a = N_a/L, b = N_b/L.
 ///
 /// N_a, N_b and L are linear forms c0·x + c1·y + c2, and L > 0 below the horizon. The square at (a,
-/// b) has the sign s(a)·s(b), where s is the square wave.
+/// b) has the sign s(a)·s(b), where s is the square wave: 1 if its argument, rounded down, is even,
+/// and −1 if it is odd.
 ///
 /// M is the matrix of the three forms. The depth m = 1/L is linear on the floor:
 ///
@@ -210,8 +211,9 @@ impl Homography {
             across,
             below,
             slope: [(0, of_a), (1, of_b)].map(|(i, by)| libm::ldexp(columns[i][2] / det, -by)),
-            // If a form has overflowed, its exponent is `i32::MAX`, and the subtraction saturates.
-            // The determinant is then not finite, so that the exponent does not matter.
+            // If a form has overflowed, its exponent `of_a` or `of_b` is `i32::MAX`. The saturating
+            // subtraction avoids an integer overflow. The result does not matter, because the
+            // determinant is then not finite.
             density: libm::ldexp(1.0 / det.abs(), (-of_a).saturating_sub(of_b)),
             density_error: det_off(Double::UNIT),
             orientation: det.signum(),
@@ -292,9 +294,9 @@ impl Homography {
     pub(in crate::exact) fn displacement_error(&self, polygon: &[DVec2]) -> f64 {
         let (_, perimeter) = measure(polygon);
         // Errors e of the forms displace a point by v = M⁻¹·e, where M is the matrix of the three
-        // forms. The displacement changes the form L only by its error, L(v) = e_L. Points near the
-        // horizon therefore hardly move perpendicular to the horizon, even if they move far along
-        // it.
+        // forms. The displacement changes the value of the form L only by the error of L. Points
+        // near the horizon therefore hardly move perpendicular to the horizon, even if they move
+        // far along it.
         let levels = polygon.iter().map(|&p| form(&self.below, p));
         let [least, more] = self.across_horizon;
         let across = (least + more * levels.fold(0.0, f64::max)).min(self.displacement);

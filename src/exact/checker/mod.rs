@@ -41,8 +41,8 @@ pub(super) use self::{
 
 /// Distance up to which squares are near, in squares, measured from the line in the board's plane
 /// where the depth is 0. Near squares are cut out one by one; the board beyond is integrated along
-/// its boundary by Green's theorem, as a series of at most 20 terms. With 18 squares, the error
-/// bound of 20 terms contains the factor 22!/2·(18π)⁻²⁰, about 5e-15. A smaller distance would make
+/// its boundary by Green's theorem, as a series of at most 20 terms. With 18 squares, the bound of
+/// the omitted terms is proportional to 22!/2·(18π)⁻²⁰, about 5e-15. A smaller distance would make
 /// this factor larger; with a larger one, more squares would have to be cut out.
 const NEAR_SQUARES: f64 = 18.0;
 /// Maximum number of squares in a polygon at which all of them are cut out one by one, at any

@@ -5,8 +5,8 @@
 //! of the squares in it, each multiplied by its sign, in square pixels, with an error bound. The
 //! board has two families of lines, those between columns and those between rows of squares. The
 //! lines of one family cut the polygon into strips, and the lines of the other family cut each
-//! strip into squares (`clip`). The bound is the sum of each cut's position error times its length,
-//! plus the rounding errors of the areas.
+//! strip into squares (`clip`). The bound includes the area over which rounding may displace each
+//! cut, and the rounding errors of the computed areas.
 
 use glam::DVec2;
 
@@ -34,8 +34,8 @@ const MAX_SQUARE: f64 = 1e15;
 
 /// Integrates the board's sign over a convex polygon that does not reach the horizon, in square
 /// pixels. The polygon is cut into the rows (or columns) of the board, and each row into squares.
-/// Returns 0 with the polygon's area as the bound if the budget does not afford the rows or the
-/// picture is cancelled. If the budget does not afford the squares of a row, the row adds 0 to the
+/// Returns 0 with the polygon's area as the bound if the budget is too small for the rows or the
+/// picture is cancelled. If the budget is too small for the squares of a row, the row adds 0 to the
 /// value and its area to the bound.
 pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -> BoundedSum {
     let mut tally = CompensatedSum::default();
@@ -199,8 +199,9 @@ impl CompensatedSum {
     fn sum(&self) -> BoundedSum {
         BoundedSum {
             value: self.value + self.rest,
-            // The final sum is rounded by at most one unit roundoff, because its absolute value is
-            // at most 1. The rounding errors of adding up `rest` are far smaller.
+            // The addition has an error of at most one unit roundoff, because the absolute value of
+            // the sum is at most 1. The errors of adding up `rest` are far below the second unit
+            // roundoff.
             bound: self.bound + 2.0 * UNIT,
         }
     }

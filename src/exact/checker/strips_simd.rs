@@ -25,7 +25,7 @@
 //!
 //! Here f is the fraction of the side that lies beyond the line, and O is a point on the line, so
 //! that the part of the outline along the line contributes 0. Each side of the pixel has a part in
-//! each strip. A part may be empty; it then starts and ends at the same number, so that it adds
+//! each strip. A part may be empty: its two ends are then exactly the same point, so that it adds
 //! exactly 0.
 
 use std::array;
@@ -188,9 +188,10 @@ impl BoardLanes {
             }
         }
         // Rounding errors: for every line, the part of a side beyond the line is computed by eight
-        // operations from the side's length and a distance of at most √2. Each of the five sums per
-        // strip has one rounding, and the sum over lines has two. The rounding of points may also
-        // displace each cutting line, and the lines on either side, by four unit roundoffs.
+        // operations from the side's length and a distance of at most √2. A strip has five sides,
+        // of which four lie on sides of the pixel. Adding a side has one rounding, and adding a
+        // line's sum has two. The rounding of points may also displace each cutting line, and the
+        // lines on either side, by four unit roundoffs.
         //
         // A displaced line sweeps at most √2, the pixel's diagonal, times its displacement. The
         // sign changes there, which doubles the error. So displacements are multiplied by 3, which
@@ -311,10 +312,11 @@ impl BoardLanes {
                 break;
             };
             // The chord is stored from the point where the pixel's boundary enters the strips
-            // before the line to the point where it leaves these strips. It is a side of the strip
-            // before the line, backwards, and of the strip after the line, forwards. These strips
-            // have opposite signs, so that the chord's total weight is −2 times the sign of the
-            // strip before the line.
+            // before the line to the point where it leaves these strips. The chord is a side of two
+            // strips. In the outline of the strip after the line, it has the stored direction; in
+            // that of the strip before the line, the opposite one. The two strips have opposite
+            // signs, so that the chord's total weight is −2 times the sign of the strip before the
+            // line.
             let [up, down] = ends;
             for i in 0..PIXELS {
                 let is_one = (crossings[0][i] == 1.0) & (crossings[1][i] == 1.0);

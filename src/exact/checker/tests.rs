@@ -173,7 +173,7 @@ fn agree(found: BoundedSum, expected: f64, most: f64, what: impl std::fmt::Debug
 
 /// Asserts that the error of `found` is within its bound and at most `most`. `size` is twice the
 /// largest coordinate in the computation of `expected`. The rounding errors of `expected` are
-/// proportional to it.
+/// proportional to `size`.
 fn agree_in_size(
     found: BoundedSum,
     expected: f64,

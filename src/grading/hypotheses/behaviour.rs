@@ -97,10 +97,10 @@ pub enum Spheres {
     LesserRoot,
     /// The farther of the two intersections is used instead of the nearer one.
     GreaterRoot,
-    /// The quadratic equation a·t² + b·t + c = 0 is solved wrongly: the program multiplies by a
-    /// instead of dividing by it. Here a is the squared length of the ray's direction vector, which
-    /// reaches from the eye to the view plane. The number is the distance of the view plane from
-    /// the eye, in metres.
+    /// The quadratic equation `a`·t² + b·t + c = 0 is solved wrongly: the program multiplies by `a`
+    /// instead of dividing by it. Here `a` is the squared length of the ray's direction vector,
+    /// which reaches from the eye to the view plane. The number is the distance of the view plane
+    /// from the eye, in metres.
     TimesA(f64),
 }
 

@@ -63,8 +63,8 @@ pub enum Shows {
     InAreas,
     /// Only at edges, where colours meet.
     AtEdges,
-    /// Inside areas and at edges, but weakly. The search at edges tries such a mistake only if the
-    /// areas of one colour, too, differ from the prediction.
+    /// A weak change both inside areas and at edges. The search at edges tries such a mistake only
+    /// if the areas of one colour, too, differ from the prediction.
     Everywhere,
 }
 
@@ -171,8 +171,8 @@ impl Candidate {
     }
 
     /// Returns a copy of the hypothesis with one more mistake. Returns `None` if the mistake is
-    /// impossible in the scene. Also returns `None` if a row of the table, or an exchange of
-    /// colours, changes nothing.
+    /// impossible in the scene. Also returns `None` if the mistake is a row of the table of
+    /// mistakes, or an exchange of colours, and changes nothing.
     pub fn with(&self, mistake: Mistake) -> Option<Self> {
         let mut candidate = self.clone();
         match &mistake {
@@ -287,7 +287,8 @@ impl Candidate {
     }
 
     /// Returns whether both hypotheses have the same mistakes, apart from the mistakes' numbers.
-    /// Also returns `true` if both programs are equal and make no change to the picture's light.
+    /// Also returns `true` if their mistakes differ, but lead to equal programs
+    /// ([`Self::shows_as`]), and neither program has `effects` on light.
     pub fn is_same_kind(&self, other: &Self) -> bool {
         if self.effects.is_empty() && other.effects.is_empty() && self.shows_as(other) {
             return true;

@@ -82,7 +82,7 @@ impl Curve {
 
     /// Returns a table with a row for each of `LIGHTS` + 1 lights from 0 to 1. The first entry of a
     /// row is the difference in light between neighbouring 8-bit values. The second is the light
-    /// that a viewer sees.
+    /// that a viewer sees if the program encodes the row's light by this curve.
     fn table(self) -> &'static [[f64; 2]] {
         static TABLES: [OnceLock<Vec<[f64; 2]>>; Curve::COUNT] =
             [const { OnceLock::new() }; Curve::COUNT];

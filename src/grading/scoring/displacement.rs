@@ -3,9 +3,10 @@
 //!
 //! To first order, a displaced picture differs from the original by its gradient times the
 //! displacement. The displacement of an object is fitted by least squares, as an affine function of
-//! the place in the picture; this covers a wrong place, size, turn or camera. If there is only
-//! sampling noise, the squared length of the fitted displacement, in standard deviations, has a χ²
-//! distribution with six degrees of freedom. So a large value is not chance.
+//! the place in the picture. Such a function describes a wrong position, size or rotation of the
+//! object, or a wrong camera. If there is only sampling noise, the squared length of the fitted
+//! displacement, in standard deviations, has a χ² distribution with six degrees of freedom. So a
+//! large value is not chance.
 
 use glam::DVec3;
 
@@ -39,17 +40,17 @@ const SURE: f64 = 8.0;
 /// reported; with a larger one, slight blurs would be overlooked.
 const WIDE: f64 = 1.4;
 /// Extra tolerance of the squared pixel width above [`WIDE`], in squared pixels, if each pixel has
-/// one sample. For n samples per pixel, it is divided by n. It is needed because few samples at the
-/// same places in all pixels may lie farther apart than a pixel's points do on average. This makes
-/// a correct picture less sharp.
+/// one sample. For n samples per pixel, it is divided by n. If all pixels use the same few sample
+/// positions, these may lie farther from the pixel's middle than its points do on average. A
+/// correct picture is then less sharp.
 const WIDER: f64 = 3.0;
 /// Tolerance of the squared pixel width below 1, the correct value, in squared pixels, in a picture
 /// without noise. With a larger tolerance, pixels that are slightly too narrow would be overlooked.
 const NARROW: f64 = 0.25;
 /// Extra tolerance of the squared pixel width below 1, in addition to [`NARROW`], in squared
-/// pixels, if each pixel has one sample. For n samples per pixel, it is divided by n. It is needed
-/// because few samples at the same places in all pixels may lie closer together than a pixel's
-/// points do on average. This makes a correct picture sharper.
+/// pixels, if each pixel has one sample. For n samples per pixel, it is divided by n. If all pixels
+/// use the same few sample positions, these may lie closer to the pixel's middle than its points do
+/// on average. A correct picture is then sharper.
 const NARROWER: f64 = 5.0;
 
 /// Greatest squared width of a pixel, in squared pixels, that counts as correct in a JPEG, whose

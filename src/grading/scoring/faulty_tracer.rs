@@ -1,4 +1,4 @@
-//! A ray tracer that takes samples, made of textbook formulas. Mistakes in it can be switched on.
+//! A sampling ray tracer that follows the formulas of textbooks. Mistakes in it can be switched on.
 //!
 //! In: a scene, the mistakes, a part of its picture, and a number of samples per pixel. Out: the
 //! mean of each pixel in the part, and the variance of one sample in it, both estimated from
@@ -129,8 +129,8 @@ impl FaultyTracer {
             // A cell is assumed to have one colour if all tested places show this colour, and the
             // cell above or to the left has one colour. This neighbour is required because the
             // squares of a board may be half as large as a cell, and all tested places may then
-            // show one colour by chance. If there are few samples, taking all of them costs less
-            // than the test.
+            // show one colour by chance. With up to 8 samples, all of them are taken, because the
+            // test would cost more.
             let mut probes = corners.iter().chain(places.iter().step_by(EACH));
             let is_first = |probe: &DVec2| self.color(corner + *probe) == first;
             if is_beside && places.len() > 8 && probes.all(is_first) {
@@ -309,9 +309,9 @@ fn face(Cuboid { min, max, .. }: &Cuboid, point: DVec3) -> usize {
     off.min_position()
 }
 
-/// Intersects a ray with a sphere by −b ± √(b² − c), the roots of t² + 2 b t + c = 0. This formula
-/// is correct only for rays of length 1, but here the ray reaches to the view plane, which is
-/// `distance` from the eye.
+/// Intersects a ray with a sphere as a faulty program does. Its formula −b ± √(b² − c), the roots
+/// of t² + 2 b t + c = 0, is correct only for rays of length 1, but here the ray reaches to the
+/// view plane, which is `distance` from the eye.
 fn with_unit_rays(sphere: &Sphere, distance: f64, eye: DVec3, ray: DVec3) -> Option<[f64; 2]> {
     let from = eye - sphere.center;
     let b = from.dot(distance * ray);

@@ -92,9 +92,9 @@ pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<DVe
             // factor 4.
             let share = SHARES[i] * SHARES[i];
             let steps = square(&jpeg.luma) + share * square(&jpeg.chroma) + 4.0 * (2.0 + share);
-            // In bright areas, the difference in light between neighbouring 8-bit values is
-            // greater. So the change of light over five standard deviations upwards is computed,
-            // and divided by five (`DEVIATIONS`).
+            // A change of an 8-bit value changes the light more in bright areas than in dark ones.
+            // So the change of light over five standard deviations upwards is computed, and divided
+            // by five (`DEVIATIONS`).
             let by = DEVIATIONS * STEP * (steps / 12.0).sqrt();
             let own = [mean[at][i], by];
             if known[i].0 != own {

@@ -44,9 +44,9 @@ pub struct Level<'a> {
 }
 
 impl<'a> Level<'a> {
-    /// Creates a picture at the resolution of a grid. The film shows the part `part` of the whole
-    /// picture. `samples` is the number of samples per cell, or `None` to render hypotheses
-    /// exactly.
+    /// Creates a level from a picture and a grid. The film shows the part `part` of the whole
+    /// picture. `samples` is the number of samples per cell with which hypotheses about the program
+    /// are rendered, or `None` to render them exactly.
     pub fn new(
         grid: Grid,
         film: &'a Film,

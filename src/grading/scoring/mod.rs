@@ -8,9 +8,9 @@
 //! not, or on the coarsest grid, the `faulty_tracer` estimates them from samples. Next, pixels are
 //! rearranged, and effects on light and `jpeg` coding are applied.
 //!
-//! A prediction says how likely the picture is (`likelihood`), which pixels are wrong whatever the
-//! samples were (`strays`), and whether edges are displaced (`displacement`). `work` counts the
-//! cost.
+//! A prediction says how likely the picture is (`likelihood`), which pixels are wrong for reasons
+//! other than sampling noise (`strays`), and whether edges are displaced (`displacement`). `work`
+//! counts the cost.
 
 mod displacement;
 mod faulty_tracer;

@@ -25,10 +25,9 @@ const FULL: f64 = 0.99;
 /// light is multiplied. Rounding to bytes changes a light of 0.01 by up to 3 %, and less light by
 /// more.
 const EMPTY: f64 = 0.01;
-/// Maximum relative difference between a cell's ratio of observed to predicted light and the median
-/// ratio, if the cell is to count as similar. Also the maximum difference from 1 at which the
-/// estimated factor counts as 1. Rounding to a byte changes a light of 0.01 (`EMPTY`) or more by at
-/// most about 3 %.
+/// Maximum relative difference by which ratios of observed to predicted light count as equal. A
+/// cell's ratio is compared with the median ratio, and the estimated factor with 1. Rounding to a
+/// byte changes a light of 0.01 (`EMPTY`) or more by at most about 3 %.
 const ALIKE: f64 = 0.03;
 
 /// Mean change of a value that is truncated to 8 bits, in steps: truncation loses between 0 and 1
@@ -230,9 +229,9 @@ impl<'a> Prediction<'a> {
                             let before = mean[at];
                             let sharp = (*own + more).clamp(DVec3::ZERO, DVec3::ONE);
                             mean[at] = sharp.map(srgb_to_linear);
-                            // Sharpening amplifies noise. The change of the mean is used as an
-                            // estimate of the added standard deviation, so its square is added to
-                            // the variance.
+                            // Sharpening amplifies noise. The standard deviation that it adds is
+                            // estimated as large as the change of the cell's mean, so the square of
+                            // this change is added to the variance.
                             let by = mean[at] - before;
                             variance[at] += by * by;
                         }
@@ -342,8 +341,8 @@ impl<'a> Prediction<'a> {
             .collect()
     }
 
-    /// Returns the standard deviations of the differences of all cells, channel by channel, if
-    /// there is one sample per cell. The greatest deviation among a cell and its neighbours is
+    /// Returns the standard deviations that the differences of all cells would have with one sample
+    /// per cell, channel by channel. The greatest deviation among a cell and its neighbours is
     /// used, so that it is large enough even if edges are displaced by a cell.
     pub fn deviations(&self) -> Vec<f64> {
         let cells = 0..self.observed.len();

@@ -20,16 +20,19 @@ use crate::grading::hypotheses::{
 /// enough, because the numbers were fitted to a coarser grid before.
 pub const ROUNDS: usize = 4;
 
-/// Tolerance of the fraction of a predicted change that is observed. A mistake at edges predicts a
-/// change of the picture. The mistake is named only if the whole change is observed, i.e. if the
-/// fraction is 1 ± 0.3. With a larger tolerance, mistakes with a similar effect would be confused.
+/// Tolerance of the observed fraction of a change. A mistake at edges predicts a change of the
+/// picture, and the picture shows a fraction of this change. The mistake is named only if the
+/// fraction is 1 ± 0.3, i.e. if about the whole change is observed. With a larger tolerance,
+/// mistakes with a similar effect would be confused.
 const SHARE_TOLERANCE: f64 = 0.3;
-/// Minimum significance of a predicted change that is observed, in standard deviations. A mistake
-/// at edges predicts a change of the picture. The mistake is named only if the observed fraction of
-/// the change exceeds 0 by this many standard deviations, because then chance is negligible.
+/// Minimum significance of an observed change, in standard deviations. A mistake at edges predicts
+/// a change of the picture, and the picture shows a fraction of this change. The mistake is named
+/// only if the fraction exceeds 0 by this many standard deviations, because then chance is
+/// negligible.
 const SURE: f64 = 7.0;
-/// Maximum fraction of a JPEG's squared difference from its prediction that a mistake at edges may
-/// leave. If it leaves more, it is not named, because it explains only a part of the difference.
+/// Maximum squared difference between a JPEG and the prediction with a mistake at edges, as a
+/// fraction of the squared difference without this mistake. If more is left, the mistake is not
+/// named, because it explains only a part of the difference.
 const LEFT_IN_CODED: f64 = 0.25;
 
 /// Identifiers of the mistakes that move samples by a few pixels at most.
@@ -55,10 +58,10 @@ const LEAST_WIDE: f64 = 1.1;
 /// A few values suffice, because edges determine a narrow width only roughly.
 const NARROW_WIDTHS: [f64; 3] = [0.25, 0.5, 0.7];
 
-/// Least number of pixels for each wrong one at which a picture is much wrong. Mistakes that are
-/// weakly visible everywhere are tried in pictures that are much wrong, i.e. in which more than
-/// 1/50 of the pixels are wrong, or whose wrong pixels lie at edges. A smaller number would
-/// overlook such mistakes in more pictures.
+/// Divisor of the number of pixels: a picture is much wrong if more than 1/50 of its pixels are
+/// wrong. Mistakes that are weakly visible everywhere are tried only in pictures that are much
+/// wrong, or whose wrong pixels lie at edges. With a smaller divisor, such mistakes would be
+/// overlooked in more pictures.
 const MUCH_WRONG: usize = 50;
 
 /// Maximum difference between the estimated shift of all edges in the picture and the shift that a
@@ -76,15 +79,15 @@ const MAX_SLIGHT_SHIFT: f64 = 0.35;
 /// similar shift first. More would take longer, and explain the shift less well.
 const SHIFTS: usize = 4;
 
-/// Minimum significance, in standard deviations, of a predicted change that is observed on the
-/// coarsest grid. A mistake predicts a change of the picture. The mistake is tested on single
-/// pixels if the observed fraction of the change exceeds 0 by more than this, and also exceeds
+/// Minimum significance of a change that is observed on the coarsest grid, in standard deviations.
+/// A mistake predicts a change of the picture, and the picture shows a fraction of this change. The
+/// mistake is tested on single pixels if the fraction exceeds 0 by more than this, and also exceeds
 /// [`HINTED_SHARE`]. The value is low, because the test on single pixels decides.
 const HINTED: f64 = 3.0;
-/// Minimum fraction of a predicted change that is observed on the coarsest grid. A mistake predicts
-/// a change of the picture. The mistake is tested on single pixels if a larger fraction of the
-/// change is observed, with the significance [`HINTED`]. The value is low, because the test on
-/// single pixels decides.
+/// Minimum fraction of a predicted change that the coarsest grid shows. A mistake predicts a change
+/// of the picture, and is tested on single pixels if the picture shows a larger fraction of this
+/// change, with the significance [`HINTED`]. The value is low, because the test on single pixels
+/// decides.
 const HINTED_SHARE: f64 = 0.3;
 
 /// Returns a hypothesis that explains the picture: `candidate` itself, or `candidate` with a
@@ -124,9 +127,9 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
     let is_shifted = candidate.behaviour.is_shifted();
     let by = residual.displacement.filter(|_| !is_shifted);
     let rows = rows.chain(by.into_iter().flat_map(|off| shifts(candidate, off.by)));
-    // If all edges are shifted by a part of a pixel, the samples are more likely not centred in
-    // their pixels than a number of the scene is slightly wrong. So the shift itself is tried as a
-    // mistake.
+    // If all edges are shifted by a part of a pixel, the usual cause is that the samples are not
+    // centred in their pixels; a slightly wrong number of the scene is less likely. So the shift
+    // itself is tried as a mistake.
     let is_slight = |by: &[f64; 2]| by[0].abs().max(by[1].abs()) < MAX_SLIGHT_SHIFT;
     let slight = by.map(|off| off.by.map(|length| (100.0 * length).round() / 100.0));
     let slight = slight.filter(is_slight).map(Mistake::Shift);
@@ -250,8 +253,9 @@ pub fn rows_in_areas(objects: &[usize]) -> impl Iterator<Item = Mistake> {
         pairs.flat_map(|(at, &one)| objects[at + 1..].iter().map(move |&other| (one, other)));
     let exchanged =
         pairs.map(|(one, other)| Mistake::ColorsExchanged(one.min(other), one.max(other)));
-    // Of mistakes that change a picture in the same way, the first in this list is kept. A missing
-    // object comes before a formula by which the object is not hit, because it is more usual.
+    // The order matters: if several mistakes change the picture in the same way, the caller keeps
+    // the first. For example, a missing object comes before a wrong formula by which the object is
+    // never hit, because it is more usual.
     of_objects
         .chain(exchanged)
         .chain(rows.map(|row| Mistake::Row(row, None)))

@@ -459,8 +459,9 @@ impl<'a> Extension<'a> {
     }
 }
 
-/// Keeps only one of all rows with the same identifier and object: the one with the least
-/// difference. Otherwise, variants of one mistake would fill the beam.
+/// Of the hypotheses whose last mistakes are rows of the table of mistakes with the same identifier
+/// and object, keeps only the one with the least difference from the picture. Otherwise, variants
+/// of one mistake would fill the beam.
 fn best_of_each_id(rows: Rated) -> Rated {
     let mut known = BTreeSet::new();
     let mut best = least(rows.into_iter(), usize::MAX);

@@ -29,9 +29,10 @@ const COARSE: u32 = 48;
 /// does not depend on it, because it is made on single pixels.
 const MIDDLE: u32 = 96;
 
-/// Distance by which the picture should move, in cells, when a number is varied to find its
-/// derivative. A smaller movement is less visible. With a larger one, the picture's change is less
-/// proportional to the number's change.
+/// Distance by which the picture should move, in cells, when a number is changed to find the
+/// derivative of the picture with respect to this number. The effect of a smaller movement is
+/// harder to measure. With a larger one, the picture's change is less proportional to the number's
+/// change.
 pub const CELL_STEP: f64 = 0.25;
 
 /// Number of samples per cell of the coarsest grid, on which mistakes are selected. It is a
@@ -175,7 +176,8 @@ impl<'a> Judge<'a> {
     /// Returns the coarsest resolution of the picture, for comparisons with variants of a
     /// hypothesis. All variants are sampled in the same way, so they have almost the same sampling
     /// error. If the hypothesis can be rendered exactly, this error is computed and added to the
-    /// observed light, so that it cancels in comparisons.
+    /// observed light, so that it cancels in comparisons. Returns `None` if the budget of work is
+    /// used up.
     pub fn tiny(&self, candidate: &Candidate) -> Option<Level<'a>> {
         let level = &self.tiny;
         let sampled = level.render(candidate, &self.work)?;
@@ -259,7 +261,8 @@ impl<'a> Judge<'a> {
 
     /// Fits only the numbers of the mistake that was added last. `from` is the hypothesis without
     /// this mistake, and `start` is the hypothesis with it. Returns the remaining difference and
-    /// the fitted hypothesis.
+    /// the fitted hypothesis. Returns `None` if the numbers of `start` are impossible, or if the
+    /// budget of work is used up.
     pub fn fit_last(
         &self,
         from: &Candidate,
@@ -276,7 +279,8 @@ impl<'a> Judge<'a> {
     /// Fits the numbers at the indices `free` among all numbers of a hypothesis's mistakes. To find
     /// derivatives, each number is varied so that the picture moves by about `cells` cells.
     /// `rounds` contains two maximum numbers of rounds: for least squares, and then for a robust
-    /// loss.
+    /// loss. Returns `None` if the hypothesis's numbers are impossible, or if the budget of work is
+    /// used up.
     pub fn fit(
         &self,
         candidate: &Candidate,

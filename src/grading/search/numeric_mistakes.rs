@@ -81,9 +81,9 @@ const NEAR_OWN: usize = 3;
 /// `candidate`.
 ///
 /// This finds slightly wrong numbers if a checkerboard with small squares fills most of the
-/// picture. The few samples of the coarsest grid cannot find them, because even a small movement of
-/// such a board changes the colours of most samples. So the grid `coarse` is used, which is
-/// rendered exactly.
+/// picture. Other fits use the coarsest grid, `tiny`, which has few samples per cell. Even a small
+/// movement of such a board changes the colours of most of these samples, so the fit fails there.
+/// Here, the next finer grid, `coarse`, is used, which is rendered exactly.
 pub fn slightly_wrong(judge: &Judge, candidate: &Candidate, suspects: &[usize]) -> Vec<Candidate> {
     let level = &judge.coarse;
     let Some((difference, _)) = judge.with_difference(candidate.clone(), level) else {

@@ -18,16 +18,16 @@ const EDGE_REACH: usize = 3;
 /// edge. It is the side of a JPEG's blocks.
 const CODED_EDGE_REACH: usize = 8;
 /// Divisor of the number of wrong pixels: errors are attributed to edges if at most 1/10 of the
-/// wrong pixels lie far from all edges. Some may, because a wide pixel filter leaves weak traces
-/// far from an edge. Chosen by trial.
+/// wrong pixels lie far from all edges. A few such pixels are allowed, because a wide pixel filter
+/// changes pixels slightly even far from an edge. Chosen by trial.
 const PIXELS_PER_INSIDE: usize = 10;
 
 /// Greatest displacement of all edges together that is ignored, in pixels. Rounded numbers in a
 /// scene may displace edges this far.
 const IGNORED: f64 = 0.06;
 
-/// Extra tolerance of the displacement of all edges, in addition to [`IGNORED`], in pixels, if each
-/// pixel has one sample. For n samples per pixel, it is divided by n. Chosen by trial.
+/// Part of the ignored displacement of all edges that depends on the number of samples per pixel,
+/// in pixels. For n samples, this value is divided by n and added to [`IGNORED`]. Chosen by trial.
 const IGNORED_WITH_ONE_SAMPLE: f64 = 0.06;
 
 /// Coefficients a, b and c of a limit in pixels. If the edges of a single object are displaced by
@@ -170,8 +170,9 @@ fn displacement_and_width(
     let [none, of_one, of_coded] = IGNORED_OF_OBJECT;
     let more = level.jpeg.map_or(of_one, |_| of_coded);
     let of_object = none + more * share.sqrt();
-    // The width is not estimated if the hypothesis already contains a wrong width. After an effect
-    // on light, a pixel is no longer a mean of light, so its width is unknown.
+    // The width is not estimated if the hypothesis already contains a wrong width. It is not
+    // estimated either if an effect on light does not keep means, since the area over which a pixel
+    // is the mean of light is then unknown.
     let is_width_explained = candidate.is_filtered() || !candidate.keeps_light();
     let width = (!is_width_explained)
         .then(|| prediction.pixel_width(&deviations, share, level.jpeg.is_some()));

@@ -25,7 +25,7 @@ pub struct Client {
 impl Client {
     /// Reads the client's capabilities from the parameters of `initialize`. The fields are looked
     /// up one by one, because generated types for all of them would lengthen compilation by about 5
-    /// %.
+    /// percent.
     pub fn new(params: &Value) -> Self {
         let field = |path: &str| params.pointer(path);
         let can = |path: &str| field(path) == Some(&Value::Bool(true));

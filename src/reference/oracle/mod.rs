@@ -253,9 +253,9 @@ impl Oracle {
     }
 
     /// Intersects the ray with the direction `r` from the eye with a box. A box is the intersection
-    /// of three slabs, each between two parallel planes. The ray is inside of the box from the last
-    /// t at which it enters a slab to the first t at which it leaves one. Returns the positive ones
-    /// of these two t, or an empty list if the ray misses the box.
+    /// of three slabs, each between two parallel planes. The ray is inside of the box from the
+    /// greatest t at which it enters a slab to the least t at which it leaves one. Returns these
+    /// two numbers, except negative ones and 0. Returns an empty list if the ray misses the box.
     fn cuboid(&self, lo: &V, hi: &V, r: &V) -> Vec<N> {
         let is_parallel = |axis: &usize| self.sign(&r[*axis], &size(r)) == Ordering::Equal;
         let (parallel, across): (Vec<_>, Vec<_>) = (0..3).partition(is_parallel);

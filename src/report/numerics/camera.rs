@@ -38,11 +38,11 @@ fn nearly_parallel(random: &mut CaseRng) -> Camera {
     let lowest = random.pick(&[-16.0, -200.0]);
     let view = random.unit() * random.power(-3.0, 3.0);
     let beside = random.unit() * random.power(lowest, -1.0);
-    // The up vector is nearly the view direction, because `beside` is usually much smaller. A very
-    // small `beside` is even lost when it is added to `view`, so that both vectors are exactly
-    // parallel. In this case, and in half of the others, the camera looks nearly straight down
-    // instead: `beside` alone gives the x and z components of the view, and the up vector is the
-    // y axis.
+    // In one half of the inputs, the up vector is the view direction plus `beside`, which is
+    // usually much smaller. In the other half, the camera looks nearly straight down, with `beside`
+    // as the deviation, and the up vector is the y axis. The camera also looks down if `beside` is
+    // so small that it is lost in the sum, since the up vector would then be exactly parallel to
+    // the view.
     let mut camera = along(DVec3::ZERO, view);
     camera.up = view + beside;
     if camera.up.cross(view) == DVec3::ZERO || random.below(2) == 0 {
@@ -77,8 +77,9 @@ fn lengths(random: &mut CaseRng) -> Camera {
 ///
 /// If d is tiny, the slope of some rays towards the checkerboard is about d. A ray is treated as
 /// parallel to the board if its slope is below a threshold: about 2^−90 in the language's rules,
-/// 2^−310 in the tracer, and 2^−1071 in the oracle (the reference, with 3000 bits). Distances d
-/// between 2^−310 and 2^−90 are not tested.
+/// 2^−310 in the tracer, and 2^−1071 in the oracle (the reference, with 3000 bits). If d is between
+/// 2^−310 and 2^−90, such rays are parallel to the board by the language's rules, but not in the
+/// tracer. Such distances are therefore not tested.
 fn lenses(random: &mut CaseRng) -> CaseScene {
     let lowest = random.pick(&[9.0, 155.0]);
     let d = random.power(lowest, lowest * 1.95);

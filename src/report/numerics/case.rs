@@ -10,7 +10,8 @@ use crate::{
     scene::{Camera, Scene, Shape},
 };
 
-/// A hard case of the arithmetic. [`cases`](super::cases) returns all cases.
+/// A hard case: a kind of scene in which rounding errors easily cause wrong answers.
+/// [`cases`](super::cases) returns all cases.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
     /// Short name of the case in tables, such as `C3a`.
@@ -70,8 +71,9 @@ pub(super) struct CaseScene {
     bits: usize,
     /// Generator of random points of the picture. By default, all points are equally likely.
     points: Box<dyn Fn(&mut CaseRng) -> SamplePoint>,
-    /// Share of the tests whose points come from the generator `points`, in halves: 0, 1 or 2. The
-    /// other tests use points close to boundaries between colours.
+    /// Share of the tests that use points from the generator `points`, in halves: 0 for none of the
+    /// tests, 1 for a half, 2 for all. The other tests use points close to boundaries between
+    /// colours.
     halves: u64,
 }
 

@@ -15,13 +15,14 @@ use crate::{
 /// pixel's centre, in pixels.
 pub type SamplePoint = [(u32, f64); 2];
 
-/// Coordinates in the middle of a picture of [`SIZE`] × [`SIZE`] pixels, for use on either axis:
-/// the last `f64` before the middle, and the middle itself.
+/// The last `f64` coordinate before the middle of a picture of [`SIZE`] × [`SIZE`] pixels, and the
+/// coordinate of the middle itself, for use on either axis. As in a [`SamplePoint`], each is given
+/// by a pixel's column or row and the offset from the pixel's centre.
 pub const MIDDLE: [(u32, f64); 2] = [(SIZE / 2 - 1, 0.5_f64.next_down()), (SIZE / 2, -0.5)];
 
-/// A generator of pseudorandom numbers. One thread tests each block of inputs of a case. The
-/// numbers depend only on the case and on the block's index, so the number of threads does not
-/// affect them.
+/// A generator of pseudorandom numbers. The inputs of a case are divided into blocks, each of which
+/// is tested by one thread. The numbers depend only on the case and on the block's index, so the
+/// number of threads does not affect them.
 #[derive(Clone, Debug)]
 pub struct CaseRng(CounterRng);
 

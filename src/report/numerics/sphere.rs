@@ -33,9 +33,9 @@ fn silhouettes(random: &mut CaseRng) -> CaseScene {
 }
 
 /// Returns a view along −z from the origin, and a sphere that touches the plane x = 0. This plane
-/// is seen as the vertical middle line of the picture. A ray in the plane touches the sphere at
-/// most, and the language treats touching as a miss. Rays beside the plane, on the sphere's side,
-/// may hit.
+/// is seen as the vertical middle line of the picture. A ray in the plane misses the sphere or
+/// touches it, and the language treats touching as a miss. Rays beside the plane, on the sphere's
+/// side, may hit.
 fn touches(random: &mut CaseRng) -> CaseScene {
     let camera = along(DVec3::ZERO, DVec3::NEG_Z);
     let row = random.pixel();

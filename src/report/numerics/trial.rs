@@ -1,5 +1,5 @@
-//! Compares what is seen at points of a picture by the oracle (a reference tracer of at least 512
-//! bits), by textbook formulas, and by Pinhole.
+//! Compares what the oracle (a reference tracer of at least 512 bits), textbook formulas and
+//! Pinhole see at points of a picture.
 
 use dashu_float::ops::Abs;
 use glam::{DVec2, DVec3, dvec2};
@@ -42,8 +42,8 @@ impl CaseTally {
         }
     }
 
-    /// Records two errors, of the textbook formulas and of Pinhole. `None` stands for an error that
-    /// was not measured.
+    /// Records the errors of the textbook formulas and of Pinhole for one input, if they are larger
+    /// than those recorded before. `None` stands for an error that was not measured.
     pub fn errors(&mut self, errors: [Option<f64>; 2]) {
         self.error = [0, 1].map(|i| greater(self.error[i], errors[i]));
     }
@@ -92,11 +92,10 @@ pub(super) struct Trial {
 /// take more time.
 const INPUTS_PER_MEASUREMENT: u64 = 16;
 
-/// Ratio of all searches for a boundary between colours to those that use the answers of the
-/// oracle, a slow reference tracer. The other searches use Pinhole's answers. The oracle also finds
-/// boundaries that Pinhole does not see, but its search takes about six times as long as testing
-/// the inputs beside the boundary. With a ratio of 8, the oracle's searches take less than half of
-/// the time.
+/// Number of searches for a boundary between colours, of which one uses the oracle's answers, and
+/// the others use Pinhole's. The oracle, a slow reference tracer, also finds boundaries that
+/// Pinhole does not see, but its search takes about six times as long as testing the inputs beside
+/// the boundary. With one search in 8, the oracle's searches take less than half of the time.
 const BOUNDARIES_PER_ORACLE_SEARCH: u64 = 8;
 
 impl Trial {
@@ -146,9 +145,10 @@ impl Trial {
         seen.map_or(background, |(object, is_odd)| color(object, is_odd))
     }
 
-    /// Measures the errors of the distance and of the coordinates of what is seen at `pixels`, and
-    /// records the larger one in `tally`. The errors are in units in the last place (ulp) of the
-    /// distance, or of the point's largest coordinate.
+    /// Measures the errors of the distance and of the coordinates of what is seen at `pixels`, in
+    /// units in the last place (ulp). For the coordinates, this is the last place of the point's
+    /// largest coordinate. Records the larger of the two errors in `tally`, for the textbook
+    /// formulas and for Pinhole.
     fn measure(&self, pixels: DVec2, tally: &mut CaseTally) {
         let r = self.oracle.direction_through(pixels, DVec2::ZERO);
         let Some(seen) = self.oracle.seen(&r) else {
@@ -242,8 +242,8 @@ impl Trial {
         }
         let (mut low, mut high) = (-0.5, 0.5_f64.next_down());
         if at(ends[0], high) == first {
-            // The pixel has one colour from its start to its end, so the colour changes between it
-            // and the next pixel.
+            // The pixel has one colour from its start to its end, so the boundary is between it and
+            // the next pixel. The pixel's end is the last point before the boundary.
             low = high;
         }
         // The interval is bisected until its ends are neighbouring `f64`s. Near 0, `f64`s are

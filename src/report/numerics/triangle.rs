@@ -56,8 +56,8 @@ const LATTICE: DVec3 = dvec3(15.0, 15.0, 18.0);
 
 /// Data of the edges of a triangle with the sides [`LATTICE`]. Each edge is shared with a second
 /// triangle, which is rotated by 180°. The first item is the centroid of the second triangle, and
-/// the second item contains some points of the edge. All are relative to the first triangle's
-/// centroid.
+/// the second item contains some points of the edge. The coordinates of both items are relative to
+/// the first triangle's centroid.
 #[rustfmt::skip]
 const SHARED: [([f64; 2], &[[f64; 2]]); 3] = [
     ([0.0, -8.0], &[[-9.0, -4.0], [-4.0, -4.0], [0.0, -4.0], [7.0, -4.0], [9.0, -4.0]]),
@@ -85,8 +85,10 @@ fn shared_edges(random: &mut CaseRng) -> CaseScene {
     input(camera(eye, middle), &shapes)
 }
 
-/// Returns two triangles that share an edge, at a distance of 64 units. The corners of pixels then
-/// show points with integer coordinates, some of which lie exactly on the edge.
+/// Returns two triangles that share an edge and face the camera. With `size` as the unit of length,
+/// the vertices and some points of the edge have integer coordinates. From the corner of one pixel
+/// to the next, the point that is seen moves by 1. Therefore, the corners of some pixels show
+/// exactly a point of the edge.
 fn lattice_points(random: &mut CaseRng) -> CaseScene {
     let size = libm::exp2(random.whole(-8, 8));
     let (other, points) = random.pick(&SHARED);

@@ -27,8 +27,8 @@ use super::{
 };
 use crate::{diagnostic::escaped, numbers};
 
-/// Width and height of a chart, in pixels. A larger chart would be reduced more on a phone, whose
-/// screen is about 400 CSS pixels wide, so that its letters could hardly be read.
+/// Width and height of a chart, in pixels. On a phone, whose screen is about 400 CSS pixels wide, a
+/// larger chart would be reduced so much that its labels could hardly be read.
 const SIZE: (u32, u32) = (560, 440);
 
 /// Width of the space for methods' names at the right of a chart, in pixels. The longest name,
@@ -188,7 +188,8 @@ fn draw(canvas: Canvas, measured: &Measurement, against: &HorizontalAxis) -> Dra
 
 /// Draws the vertical line of the exact method. An arrow at its lower end shows that the method's
 /// error lies below the chart. The other methods' lines run from the top left to the bottom right,
-/// so the label is placed in another corner.
+/// so the label is placed at the lower end of the vertical line in the left half of the chart, and
+/// at its upper end in the right half.
 fn draw_exact(canvas: &Canvas, x: i32, columns: &Range<i32>, rows: &Range<i32>) -> Drawn {
     let end = rows.end - 2;
     let head = [(x - 6, end - 10), (x, end), (x + 6, end - 10)];
@@ -203,10 +204,10 @@ fn draw_exact(canvas: &Canvas, x: i32, columns: &Range<i32>, rows: &Range<i32>) 
     write(canvas, "exact", place)
 }
 
-/// Returns the ends of a line that shows a slope. The line lies at the lower left of the chart,
-/// where no method's line runs. All slopes begin at one point. It is so high that even the steepest
-/// slope, −3/4, ends above the least value of the chart, where the line of a requested error may
-/// be.
+/// Returns the ends of a line that shows a slope, for comparison with the methods' lines. It lies
+/// at the lower left of the chart, where no method's line runs. All such lines begin at the same
+/// point. The point is chosen so that even the steepest line, with the slope −3/4, ends above the
+/// lower edge of the chart, since the line of a requested error may run along this edge.
 fn guide(x: &Range<f64>, y: &Range<f64>, slope: f64) -> [(f64, f64); 2] {
     let at = |part: f64| x.start * libm::pow(x.end / x.start, part);
     let (from, to) = (at(0.18), at(0.5));

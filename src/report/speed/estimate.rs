@@ -1,9 +1,8 @@
 //! Estimates of the samples and the time that each method needs to reach an error, and a ranking of
 //! the methods by CPU time.
 
-use super::{
-    results::{LEAST_BEND, Measurement, MethodSeries, Run, SeriesPoint, bend, end_slope},
-    statistics,
+use super::results::{
+    EndSlope, LEAST_BEND, Measurement, MethodSeries, Run, SeriesPoint, bend, end_slope,
 };
 use crate::scene::Method;
 
@@ -34,7 +33,8 @@ impl Estimate {
 /// The methods that reach an error, ranked by CPU time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranking {
-    /// The method with the least CPU time, and others whose times do not clearly differ from it.
+    /// The method with the least CPU time, and the methods whose CPU times do not clearly differ
+    /// from this time.
     pub fastest: Vec<(Method, Estimate)>,
     /// The other methods, sorted by CPU time.
     pub others: Vec<(Method, Estimate)>,
@@ -121,8 +121,8 @@ impl MethodSeries {
 
     fn estimate_by(&self, steps: &[Measured], error: f64) -> Option<Estimate> {
         let (&(first, _), &(last, last_run)) = (steps.first()?, steps.last()?);
-        // Index of the smallest number of samples that, like all larger ones, has a small enough
-        // error.
+        // Index of the smallest number of samples from which on all measured errors are small
+        // enough.
         let enough = steps.iter().rposition(|(_, run)| run.error > error);
         let enough = enough.map_or(0, |last| last + 1);
         let per_pixel = match steps.get(enough) {
@@ -132,8 +132,7 @@ impl MethodSeries {
             Some(many) => self.between(&steps[enough - 1], many, error),
             None => {
                 let slope = slope_beyond(steps)?;
-                let more = libm::pow(error / last_run.error, 1.0 / slope);
-                (slope < 0.0).then(|| (last * more).ceil())?
+                (last * libm::pow(error / last_run.error, 1.0 / slope)).ceil()
             }
         };
         per_pixel.is_finite().then(|| Estimate {
@@ -163,18 +162,20 @@ impl MethodSeries {
 }
 
 /// Returns the slope along which a line of errors is extrapolated beyond its last point. This is
-/// the slope at the line's end or, if the line bends there, that of its last segment. Returns
-/// `None` if the numbers of samples are too close to each other.
+/// the slope fitted to the last three points or, if the line bends there, the slope through the
+/// last two. Returns `None` if the numbers of samples are too close to each other, or if more
+/// samples hardly reduce the error, since a small slope may be noise.
 fn slope_beyond(steps: &[Measured]) -> Option<f64> {
     let points = steps.iter().map(|(per_pixel, run)| (*per_pixel, run.error));
     let points: Vec<_> = points.collect();
-    let slope = end_slope(&points)?;
-    match bend(&points) {
+    let whole = end_slope(&points)?;
+    let slope = match bend(&points) {
         Some(bend) if bend.abs() > LEAST_BEND => {
-            statistics::slope(&points[points.len().saturating_sub(2)..])
+            end_slope(&points[points.len().saturating_sub(2)..])?
         }
-        _ => Some(slope),
-    }
+        _ => whole,
+    };
+    (slope < -EndSlope::LEAST).then_some(slope)
 }
 
 /// Returns the least number of samples that is at least `per_pixel` and equals n·n or n·(n + 1) for
@@ -202,8 +203,8 @@ fn time_at(steps: &[Measured], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     let slope = |a: &(f64, f64), b: &(f64, f64)| (b.1 - a.1) / (b.0 - a.0);
     match times.windows(2).find(around) {
         Some([a, b]) => a.1 + slope(a, b) * (per_pixel - a.0),
-        // Measured times may fall by chance, but more samples never take less time. So a negative
-        // slope is replaced by 0.
+        // Measured times may fall by chance although the number of samples grows. In fact, more
+        // samples never need less time, so a negative slope is replaced by 0.
         _ => last.1 + slope(first, last).max(0.0) * (per_pixel - last.0),
     }
 }

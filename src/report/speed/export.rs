@@ -13,8 +13,9 @@ use super::{
 };
 
 /// A row of the CSV file. Times are medians in seconds: CPU time in `time`, and elapsed time in
-/// `wall`. Errors are in linear light. The exact method has no number of samples, and an error
-/// bound instead of an error. A line that bends has no slope.
+/// `wall`. Errors are in linear light. The exact method uses no samples, so its row has an error
+/// bound instead of the number of samples, the error and the slope. The slope is also left out if
+/// it changes clearly between the last measurements.
 #[derive(Default, Serialize)]
 struct CsvRow {
     method: &'static str,
@@ -83,7 +84,6 @@ fn of_runs(runs: &[Run]) -> Value {
 }
 
 /// Converts a measurement to JSON. Numbers that are not finite become null.
-#[doc(hidden)]
 pub fn to_json(measured: &Measurement) -> Value {
     let whole = measured.whole();
     let (machine, reference) = (&measured.machine, &measured.reference);

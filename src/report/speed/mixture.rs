@@ -13,12 +13,11 @@ use crate::{
 /// one, a report, which usually takes 45 s, would take noticeably longer.
 const MAX_WORK: u64 = 40_000_000;
 
-/// Fractions, from 0 to 1, of a picture's pixels that show more than one colour. Only in these
-/// pixels can a sampling method err.
+/// Fractions, from 0 to 1, of a picture's pixels in which sampling methods can err.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixture {
     /// Fraction of the picture's pixels that show an edge: several objects, several faces of a box
-    /// with coloured faces, or an object and the background.
+    /// with coloured faces, or an object and the background. Both sides may have the same colour.
     pub edges: f64,
     /// Fraction of the picture's pixels that show only a checkerboard, in both of its colours.
     pub board: f64,
@@ -28,41 +27,59 @@ pub struct Mixture {
 }
 
 impl Mixture {
-    /// Counts the pixels that show more than one colour, in the picture of a scene.
+    /// Counts the pixels that show an edge or both colours of a checkerboard, in the picture of a
+    /// scene.
     pub fn of(scene: &Scene) -> Self {
-        let (edges, reaches_edges) = share_of_mixed(&World::by_surface(scene));
+        let surfaces = Mixed::among(&World::by_surface(scene), MAX_WORK);
         let is_board = |shape: &Shape| matches!(shape, Shape::Checkerboard(_));
         let has_board = scene.objects.iter().any(|object| is_board(&object.shape));
-        let (both, reaches_board) = if has_board {
-            share_of_mixed(&World::new(scene))
+        let colors = if has_board {
+            Mixed::among(&World::new(scene), MAX_WORK.saturating_sub(surfaces.work))
         } else {
-            (edges, true)
+            Mixed::default()
         };
+        let count = |flags: &mut dyn Iterator<Item = bool>| flags.filter(|is| *is).count() as f64;
+        let edges = count(&mut surfaces.pixels.iter().copied());
+        // A pixel that shows one surface in several colours shows a checkerboard alone.
+        let both = surfaces.pixels.iter().zip(&colors.pixels);
+        let board = count(&mut both.map(|(has_edge, has_colors)| *has_colors && !has_edge));
+        let all = surfaces.pixels.len() as f64;
         Self {
-            edges,
-            // An edge between surfaces of the same colour is counted in `edges`, but not in `both`.
-            // So the difference may be negative, and is then replaced by 0.
-            board: (both - edges).max(0.0),
-            is_complete: reaches_edges && reaches_board,
+            edges: edges / all,
+            board: board / all,
+            is_complete: surfaces.work + colors.work <= MAX_WORK,
         }
     }
 }
 
-/// Returns the fraction of the picture's pixels that show several entries of the world's palette.
-/// An entry is a colour or, in a world made by [`World::by_surface`], a surface. Also returns
-/// whether all pixels were reached within the work limit.
-fn share_of_mixed(world: &World) -> (f64, bool) {
-    let whole = world.picture();
-    let integrator = Integrator::for_values(world, |_| []).with_work_limit(MAX_WORK);
-    let mut mixed: u64 = 0;
-    for tile in whole.tiles(2 * GRID) {
-        integrator.shares(tile, |_, shares| {
-            // Fractions of a pixel's area of at most 1e-9 may be rounding errors, so they are
-            // ignored.
-            let seen = shares.iter().filter(|(_, share)| *share > 1e-9);
-            mixed += u64::from(seen.count() > 1);
-        });
+/// The pixels that show several entries of a world's palette. An entry is a colour or, in a world
+/// made by [`World::by_surface`], a surface.
+#[derive(Default)]
+struct Mixed {
+    /// Whether each pixel shows several entries, row by row.
+    pixels: Vec<bool>,
+    /// Work that was spent, in units of about 50 ns.
+    work: u64,
+}
+
+impl Mixed {
+    /// Finds the pixels in a world's picture. When the work exceeds `limit`, the remaining pixels
+    /// are treated as having one entry.
+    fn among(world: &World, limit: u64) -> Self {
+        let whole = world.picture();
+        let integrator = Integrator::for_values(world, |_| []).with_work_limit(limit);
+        let mut pixels = vec![false; whole.pixels() as usize];
+        for tile in whole.tiles(2 * GRID) {
+            integrator.shares(tile, |area, shares| {
+                // Fractions of a pixel's area of at most 1e-9 may be rounding errors, so they are
+                // ignored.
+                let seen = shares.iter().filter(|(_, share)| *share > 1e-9);
+                if seen.count() > 1 {
+                    pixels[whole.index(area.x, area.y)] = true;
+                }
+            });
+        }
+        let work = integrator.work();
+        Self { pixels, work }
     }
-    let share = mixed as f64 / whole.pixels() as f64;
-    (share, integrator.work() <= MAX_WORK)
 }

@@ -1,10 +1,10 @@
 //! Measures how the error of each sampling method falls with time.
 //!
-//! In: a scene, and a [`Request`] with the methods, the numbers of samples and the number of runs.
-//! [`measure`] times renders and compares them with the exact picture. Out: a [`Measurement`],
-//! which is plain data. It is written as a table for a terminal ([`text()`]), as files for programs
-//! ([`to_csv`], [`to_json`]), as charts ([`against_time`], [`against_samples`]), and as an HTML
-//! page with all of these ([`page()`]).
+//! A [`Request`] contains the methods, the numbers of samples and the number of runs. [`measure`]
+//! times renders of a scene and compares them with the exact picture. Its result is a
+//! [`Measurement`], which is plain data. It is written as a table for a terminal ([`text()`]), as
+//! files for programs ([`to_csv`], [`to_json`]), as charts ([`against_time`], [`against_samples`]),
+//! and as an HTML page with all of these ([`page()`]).
 
 mod chart;
 mod estimate;

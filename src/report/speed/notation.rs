@@ -74,7 +74,8 @@ pub fn slope(slope: Option<EndSlope>) -> String {
     }
 }
 
-/// Formats a factor with two significant digits. `None` and factors above 10⁶ become [`UNKNOWN`].
+/// Formats a factor with two significant digits. `None` and factors above 10⁶ become [`UNKNOWN`],
+/// since factors computed from measured slopes are not that reliable.
 pub fn factor(factor: Option<f64>) -> String {
     let known = factor.filter(|factor| *factor <= 1e6);
     known.map_or(UNKNOWN.to_owned(), |factor| significant(factor, 2))

@@ -77,7 +77,9 @@ fn compared(measured: &Measurement, error: f64) -> Option<String> {
 }
 
 /// Compares the exact method with the fastest sampling method: says how many samples per pixel the
-/// sampling method computes in the CPU time that the exact method needs.
+/// sampling method computes in the CPU time that the exact method needs. Returns `None` if the
+/// exact method or every sampling method lacks a measurement, or if the number of samples is below
+/// 1.
 fn in_exact_time(measured: &Measurement) -> Option<String> {
     let exact = measured.exact_estimate(1.0)?;
     let most = measured.series.iter().filter_map(|series| {

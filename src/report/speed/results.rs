@@ -1,4 +1,5 @@
-//! The request for a measurement, and its results: plain data, and numbers that follow from them.
+//! The request for a measurement, and its results. From the results, this module also computes
+//! slopes, typical values of several runs, and the samples that can be rendered in a given time.
 
 use std::time::Duration;
 
@@ -98,16 +99,16 @@ pub struct EndSlope {
     /// fewer than three runs.
     pub error: Option<f64>,
     /// Whether the line bends, i.e. its last two segments have clearly different slopes. If so,
-    /// `slope` is a mean of these two slopes, and says little about more samples.
+    /// `slope` is a mean of these two slopes, and the error for more samples cannot be predicted
+    /// from it.
     pub bends: bool,
 }
 
 impl EndSlope {
-    /// Minimum value of −`slope` at which the report says that more samples help. `slope` is that
-    /// of the error against the number of samples on logarithmic axes. A smaller value may come
-    /// from noise in the measurement. For independent samples, the value is 0.5, far above the
-    /// minimum.
-    const LEAST: f64 = 0.05;
+    /// Minimum value of −`slope` at which the report says that more samples reduce the error. A
+    /// smaller value may come from noise in the measurement. For independent samples, the value is
+    /// 0.5, far above the minimum.
+    pub const LEAST: f64 = 0.05;
 
     /// Returns the factor by which the error falls if there are four times as many samples,
     /// 4^−`slope`. Returns `None` if more samples do not help, or if the line bends.
@@ -121,7 +122,8 @@ impl EndSlope {
         self.settled().map(|slope| libm::pow(10.0, -1.0 / slope))
     }
 
-    /// Returns the slope if more samples would continue it and help.
+    /// Returns the slope if more samples reduce the error, and the slope is expected to stay the
+    /// same.
     fn settled(&self) -> Option<f64> {
         (!self.bends && self.slope < -Self::LEAST).then_some(self.slope)
     }
@@ -136,14 +138,16 @@ pub fn end<T>(points: &[T]) -> &[T] {
 }
 
 /// Minimum ratio of the largest to the smallest number of samples to which a slope is fitted. Over
-/// a smaller range, noise in the errors could change the slope more than the method does. So could
-/// the grid into which a method divides a pixel: for 17 samples, for example, it is a single row.
+/// a smaller range, the slope could depend more on noise than on the method. It could also depend
+/// on how a method divides a pixel into a grid: for 17 samples, for example, the grid is a single
+/// row.
 pub const LEAST_SPAN: f64 = 4.0;
 
-/// Minimum difference between the slopes of a line's last two segments at which the line is said
-/// to bend. In ordinary scenes, the lines of methods with strata flatten by up to 0.08 from segment
-/// to segment, as more samples meet finer detail. A line bends by more where a method still leaves
-/// pixels empty, as `scatter` does, or where a grid is aligned with an edge.
+/// Minimum difference between the slopes of a line's last two segments at which the line is said to
+/// bend. In ordinary scenes, the slopes of methods with strata become less steep by up to 0.08 from
+/// segment to segment. Larger differences occur if a method, such as `scatter`, leaves pixels
+/// without samples, or if a grid of samples is aligned with an edge. A smaller minimum would report
+/// bends in ordinary scenes.
 pub const LEAST_BEND: f64 = 0.1;
 
 /// Returns the slope at the end of the line through `points` on logarithmic axes, fitted to the
@@ -244,9 +248,9 @@ impl MethodSeries {
         })
     }
 
-    /// Returns the number of samples per pixel that takes the CPU time `cpu`, interpolated linearly
-    /// between the measured numbers. The result is at least the smallest and at most the greatest
-    /// measured number. Returns `None` if nothing was measured.
+    /// Returns the number of samples per pixel that can be rendered in the CPU time `cpu`,
+    /// interpolated linearly between the measured numbers. The result is at least the smallest and
+    /// at most the greatest measured number. Returns `None` if nothing was measured.
     pub fn samples_in(&self, cpu: f64) -> Option<u64> {
         let (first, last) = (self.points.first()?, self.points.last()?);
         let slower = |pair: &&[SeriesPoint]| pair[1].typical().cpu > cpu;

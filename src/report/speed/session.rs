@@ -1,12 +1,12 @@
 //! Times renders, and compares them with the exact picture.
 //!
 //! The exact picture is rendered first, since all errors are differences from it. This render is
-//! not timed, because it also warms up the caches and the processor. Then the renders are timed in
-//! several rounds. In each round, every method renders once with every number of samples. If the
-//! user does not choose these numbers, they are 1, 4, 16 and 64. Higher powers of 4 follow as long
-//! as two conditions hold: there is time for a few rounds with the next number, and the error of
-//! some method is still above the smallest requested error. In later rounds, the renders are in
-//! shuffled order, so that other load on the machine affects all methods alike.
+//! not timed, but warms up the caches and the processor for the timed renders. Then the renders are
+//! timed in several rounds. In each round, every method renders once with every number of samples.
+//! If the user does not choose these numbers, they are 1, 4, 16 and 64. Higher powers of 4 follow
+//! as long as two conditions hold: there is time for a few rounds with the next number, and the
+//! error of some method is still above the smallest requested error. In later rounds, the renders
+//! are in shuffled order, so that other load on the machine affects all methods alike.
 //!
 //! A timed render starts with the scene in memory and ends with the picture in memory. It includes
 //! preparing the objects and the samples, and starting the threads. Reading the scene, comparing
@@ -44,9 +44,9 @@ const RUNGS: (usize, usize) = (4, 10);
 /// report would take longer for hardly better medians.
 const RUNS: (u64, u64) = (3, 9);
 
-/// Number of samples per pixel of the slowest method in the pictures by which the page compares
-/// methods. The other methods get the same CPU time. With 16, noise is still visible, and so are
-/// the differences between the methods.
+/// Number of samples per pixel with which the slowest method renders its picture for the comparison
+/// on the page. The other methods get the same CPU time. With 16, noise is still visible, and so
+/// are the differences between the methods.
 const SHOWN: u64 = 16;
 
 /// Makes the measurement that the request describes. Calls `progress` after each timed render with

@@ -99,9 +99,9 @@ pub fn verdict(measured: &Measurement, error: f64) -> String {
     verdict
 }
 
-/// Returns the end of a sentence that recommends the methods that reach `error` with the fewest
-/// samples. Extrapolated estimates are ignored. Returns `None` if all other estimates are at least
-/// [`TOO_QUICK`], because the methods can then be compared by time.
+/// Returns the end of a sentence that recommends methods: those with the fewest samples for
+/// `error`. Extrapolated estimates are ignored. Returns `None` if none of the remaining estimates
+/// is below [`TOO_QUICK`], because the methods can then be compared by time.
 fn by_samples(measured: &Measurement, error: f64) -> Option<String> {
     let estimates = measured.series.iter().filter_map(|series| {
         let estimate = measured.estimate(series, error)?;
@@ -161,8 +161,9 @@ fn per_pixel(estimate: &Estimate) -> String {
 }
 
 /// Returns the table of methods. A method's row contains the slope of the logarithm of the error
-/// over the logarithm of the number of samples, and what this slope means. For each of `errors`, it
-/// also contains the samples, the CPU time and the elapsed time that the method needs.
+/// over the logarithm of the number of samples, and two factors that follow from the slope. For
+/// each of `errors`, it also contains the samples, the CPU time and the elapsed time that the
+/// method needs.
 pub fn table(measured: &Measurement, errors: &[f64]) -> SummaryTable {
     let mut heads = vec!["method".to_owned()];
     heads.extend(

@@ -45,7 +45,7 @@ const OTHER_FUNCTIONS: &[(&str, &str)] = &[
 const LOOKED_BACK: usize = 8;
 
 impl<'s> Evaluator<'_, 's> {
-    /// Returns the result of a call. Reports errors and then returns `None`.
+    /// Returns the result of a call. If the call is wrong, reports why and returns `None`.
     pub(super) fn call(&mut self, call: &Call<'s>) -> Option<Value> {
         let Call {
             function,
@@ -192,8 +192,8 @@ impl<'s> Evaluator<'_, 's> {
         // around the coordinates, so they are added; a function of numbers must not have them, so
         // they are removed.
         let meant = match (row.takes, arguments) {
-            // The language has no transparency, so a fourth channel is left out. A colour such as
-            // `red` needs no `rgb` around it.
+            // The language has no transparency, so a fourth channel is left out. If the argument is
+            // a colour such as `red`, `rgb` itself is left out.
             (_, [r, g, b, _]) if is_rgb => Some(format!("rgb({})", [r, g, b].map(text).join(", "))),
             (_, [only])
                 if is_rgb
@@ -342,9 +342,9 @@ impl<'s> Evaluator<'_, 's> {
             "asin" | "acos" => (
                 format!("`{name}` takes a number from -1 to 1"),
                 match known {
-                    // The argument is not between −1 and 1, by more than a rounding error, so it
-                    // has no inverse sine or cosine. The help for a quotient also asks whether its
-                    // two operands are in the right order.
+                    // The argument is outside of the range from −1 to 1, by more than a rounding
+                    // error, so no angle has this sine or cosine. If the argument is a quotient,
+                    // the next case also asks whether its operands are in the right order.
                     [Value::Number(x)] if x.abs() > 1.0 + 1e-9 && !written.contains('/') => {
                         "no angle has that".to_owned()
                     }

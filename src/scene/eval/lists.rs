@@ -15,7 +15,7 @@ use crate::{
 };
 
 impl<'s> Evaluator<'_, 's> {
-    /// Returns the value of a list. Reports errors and then returns `None`.
+    /// Returns the value of a list. If the list has errors, reports them and returns `None`.
     pub(super) fn tuple(
         &mut self,
         elements: &[Element<'s>],

@@ -15,8 +15,8 @@ use crate::{
 };
 
 impl<'s> Evaluator<'_, 's> {
-    /// Returns the value of a name. Returns `None` if the name has no value, and reports the name
-    /// if it is undefined.
+    /// Returns the value of a name. If the name is undefined, or is the name of a function, reports
+    /// it and returns `None`. Also returns `None` if the definition of the name has errors.
     pub(super) fn name(
         &mut self,
         name: &'s str,
@@ -27,8 +27,9 @@ impl<'s> Evaluator<'_, 's> {
             return value;
         }
         let defined = self.names.defined.get(name);
-        // If there are `--set` arguments, all definitions of the file are evaluated before its
-        // blocks. Even then, a text of the file may use only names that are defined above it.
+        // A definition below this use may already have a value: if there are `--set` arguments, all
+        // definitions are evaluated before the blocks. In the text of the file, a name may only be
+        // used below its definition, so a definition below the use is ignored.
         let is_above =
             |defined: &&Defined| span.source != SourceId::File || defined.place.start < span.start;
         if let Some(defined) = defined.filter(is_above) {
@@ -254,8 +255,8 @@ impl<'s> Evaluator<'_, 's> {
         Some((near.to_owned(), Applicability::safe_if(is_sure)))
     }
 
-    /// Returns the type of a value in words. If the value is a name, the text also says where it
-    /// was defined.
+    /// Returns the type of a value in words. If the value is a name, the text also says where the
+    /// name was defined.
     pub fn described(&self, value: &tree::Value<'s>, kind: Type) -> String {
         let noun = kind.noun();
         let defined = match value.kind {

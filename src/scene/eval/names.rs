@@ -27,11 +27,12 @@ pub struct Names<'s> {
     pub(super) defined: HashMap<&'s str, Defined>,
     /// The names of `defined`, in the order of their definitions.
     order: Vec<&'s str>,
-    /// Words in parts of the file that could not be parsed. Each such part was reported, and its
-    /// words may be names that it was meant to define, so these names are not reported as
+    /// Words in parts of the file that could not be parsed. Each such part was reported. Its words
+    /// may be names that the author meant to define there, so these names are not reported as
     /// undefined.
     pub(super) parts: HashSet<&'s str>,
-    /// Every definition of the file with the span of its name, including later ones.
+    /// Span of the name in each definition of the file, including definitions below the current
+    /// place.
     definitions: HashMap<&'s str, Span>,
     /// Names of the file's objects. If one of them is used as a value, the report says that an
     /// object is no value.
@@ -184,9 +185,9 @@ impl<'s> Names<'s> {
         self.definitions.get(name).copied()
     }
 
-    /// Returns the names that are defined so far, so that they can be compared with an undefined
-    /// name. Reduces the number of comparisons that may still be made. Returns `None` if fewer are
-    /// left than the comparison with all known names needs.
+    /// Returns the names that are defined so far, with which an undefined name is to be compared.
+    /// The total number of such comparisons is limited; this function deducts one for each known
+    /// name from the number that remains. Returns `None` if too few remain.
     pub(super) fn to_compare(&self) -> Option<&[&'s str]> {
         // Approximate number of predefined colours and constants. An undefined name is compared
         // with them too. An estimate is enough, because it only limits the number of searches.

@@ -18,8 +18,8 @@ use crate::{
 type Left<'t, 's> = (Value, Span, Option<&'t tree::Value<'s>>);
 
 impl<'s> Evaluator<'_, 's> {
-    /// Returns the negative of a value. Reports an error if values of its type have no negative,
-    /// such as colours.
+    /// Returns the negative of a value. If values of its type, such as colours, have no negative,
+    /// reports an error and returns `None`.
     pub(super) fn negation(&mut self, sign: Span, operand: &tree::Value<'s>) -> Option<Value> {
         let value = self.value(operand, None)?;
         let negative = value::negate(value);
@@ -153,8 +153,8 @@ impl<'s> Evaluator<'_, 's> {
             _ => "only numbers, angles and vectors of one kind go together".to_owned(),
         };
         let vector = |span, text: &str| vec![Fix::write(span, format!("({text}, {text}, {text})"))];
-        // The number was more likely meant in the unit of the other operand, so the fix with this
-        // unit comes first.
+        // The operand without a unit was more likely meant in the unit of the other operand, so the
+        // fix with this unit comes first.
         let with_unit = |tree: &tree::Value<'s>, value: Value, other: Value| match (value, other) {
             (Value::Number(number), Value::Angle(angle)) if self.set_in(tree).is_none() => {
                 let mut units = self.units(tree, number);

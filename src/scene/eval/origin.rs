@@ -22,8 +22,8 @@ pub enum UnitOrigin {
 
 use UnitOrigin::{In, Plain, Unclear};
 
-/// First digits of pi, 2 pi, pi/2 and pi/180, as people write them. A number that starts with them
-/// suggests radians.
+/// First digits of pi, 2 pi, pi/2 and pi/180, as people write them. A number that starts with one
+/// of these texts suggests radians.
 const LIKE_PI: [&str; 5] = ["3.14", "6.28", "1.57", "0.0174", ".0174"];
 
 impl UnitOrigin {

@@ -125,7 +125,8 @@ impl<'s> Lowering<'s> {
         self.problems.push(problem);
     }
 
-    /// Returns the method named `written`. Reports an unknown name and returns `None`.
+    /// Returns the method named `written`. If there is no such method, reports the name and returns
+    /// `None`.
     fn method(&mut self, written: &str, tree: &tree::Value<'s>) -> Option<Value> {
         if let Some(method) = schema::method(written) {
             return Some(Value::Method(method));
@@ -261,9 +262,9 @@ fn allowed(row: &FieldRow, condition: Condition, value: Value) -> (String, Appli
 }
 
 /// Returns the `rgb` call for a colour that was written as a vector. If a channel is greater than
-/// 1, the channels are assumed to go up to 255, and otherwise up to 1. Returns `None` if a channel
-/// is negative or greater than 255. Channels up to 1 must be multiplied by 255, which is done only
-/// if all of them are literals; otherwise, also returns `None`.
+/// 1, the channels are assumed to go from 0 to 255, and are used as they are. Otherwise, they are
+/// assumed to go from 0 to 1, and are multiplied by 255. Returns `None` if a channel is negative or
+/// greater than 255, or if a channel that must be multiplied is not a literal.
 fn rgb(parts: DVec3, tree: &tree::Value<'_>, text: &str) -> Option<(String, Applicability)> {
     let ValueKind::Tuple(elements) = &tree.kind else {
         return None;

@@ -60,8 +60,8 @@ impl Lowering<'_> {
     /// Returns the fixes for two given fields that exclude each other, because they belong to
     /// different alternatives of `choice`. A fix keeps the fields of one alternative and removes
     /// those of all others. There are at most two fixes, one for each of the two fields. A fix is
-    /// omitted if the kept alternative lacks a field that it must have, or if a field that is not
-    /// removed stands between the removed ones.
+    /// omitted if the kept alternative would be incomplete. It is also omitted if the removed
+    /// fields do not follow each other directly in the text.
     pub(super) fn one_of(
         &self,
         block: &LoweredBlock<'_>,

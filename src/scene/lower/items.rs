@@ -55,8 +55,8 @@ impl<'s> Lowering<'s> {
                     let problem = problem.at(name.span, "this name is taken").help(help);
                     self.problems.push(problem);
                 }
-                // The name is defined without a value. It is uncertain which of its two meanings a
-                // use of the name has, so uses are not reported.
+                // The name is defined without a value. A use of the name may mean the predefined
+                // value or this definition, so uses are not reported.
                 self.names.define(name, None, &definition.value);
             }
             (None, None) => {
@@ -158,7 +158,8 @@ impl<'s> Lowering<'s> {
         }
         let unknown: Vec<_> = left().filter(|field| !is_known(field)).collect();
         // If two unknown words probably mean the same field, it is uncertain which of them is
-        // right. The field is recorded as given, so that it is not reported as missing.
+        // right. The field is nevertheless recorded as given, so that it is not also reported as
+        // missing.
         let mut tried: Vec<&str> = Vec::new();
         for field in unknown
             .iter()
@@ -180,8 +181,8 @@ impl<'s> Lowering<'s> {
         lowered
     }
 
-    /// Returns the schema's row for the kind of a block. Reports an unknown kind, and then returns
-    /// the row of the nearest kind, if there is one.
+    /// Returns the schema's row for the kind of a block. If the kind is unknown, reports it and
+    /// returns the row of the nearest kind, if there is one.
     fn row(&mut self, block: &tree::Block<'s>) -> Option<&'static BlockRow> {
         let kind = block.kind?;
         let row = schema::block(kind.text);
@@ -411,8 +412,8 @@ impl<'s> Lowering<'s> {
         let Some(name) = block.name else { return };
         let text = name.text;
         let problem = if !row.is_object {
-            // Text of the block could not be parsed. The name may be a part of it, so it is not
-            // reported.
+            // A part of the block's text could not be parsed. The name may belong to this part, so
+            // it is not reported.
             if !block.bad.is_empty() {
                 return;
             }

@@ -23,8 +23,8 @@ impl<'s> Lowering<'s> {
         };
         let required = row.field_names();
         let required = required.filter(|name| is_missing(name, Preset::Required));
-        // Each element is a set of fields that would complete the block; the first one is the usual
-        // choice.
+        // Each element is one possible set of fields that would complete the block. The first set
+        // is the usual one.
         let mut ways: Vec<Vec<&'static str>> = vec![required.collect()];
         for choice in row.choices {
             let is_taken = |way: &&&[&str]| way.iter().any(has);

@@ -18,8 +18,9 @@ use crate::{
 };
 
 /// Number of bytes at the start of a file in which zero bytes are counted. Zero bytes show that the
-/// file is binary rather than text. Binary files usually have zero bytes near their start. A larger
-/// number would also find those further down, but the search would take longer.
+/// file is binary rather than text. Binary files usually have zero bytes near their start. With a
+/// larger number, a file whose first zero byte comes later would also be recognized, but the search
+/// would take longer.
 const BINARY_BYTES: usize = 1 << 14;
 
 /// Reads a scene: parses the file and the `--set` arguments, and converts them to a scene.

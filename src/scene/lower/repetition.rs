@@ -63,7 +63,7 @@ impl<'s> Lowering<'s> {
     }
 
     /// Returns the combinations of the indices' values, concatenated in order. For `for i < 2, j <
-    /// 2`, these are 0 0, 0 1, 1 0 and 1 1. Reports a wrong count and then returns `None`.
+    /// 2`, these are 0 0, 0 1, 1 0 and 1 1. If a count is wrong, reports it and returns `None`.
     ///
     /// Counts that depend on no index are evaluated first. If their product is too large, this is
     /// reported before many combinations are stored, whatever the order of the indices.
@@ -272,8 +272,9 @@ impl<'s> Lowering<'s> {
     fn unused_index(&mut self, name: Name<'s>, block: &Block<'s>) {
         let behind = Span::new(name.span.source, name.span.end, block.span.end);
         let text = self.sources.text(behind);
-        // If the block contains the index with other capital letters, this word is reported as an
-        // undefined name. The index is not reported as unused as well.
+        // If the block contains the index's name in another capitalization, that word is reported
+        // as an undefined name. It probably means the index, so the index is not reported as
+        // unused.
         let mut words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
         if block.open.is_none()
             || has_name(text, name.text)
@@ -291,9 +292,8 @@ impl<'s> Lowering<'s> {
             .push(problem.at(name.span, "no value depends on it").help(help));
     }
 
-    /// Returns the number of values that an index takes, i.e. the value of its count. The indices
-    /// before it must have values. Reports a count that is not a whole number ≥ 0 and then returns
-    /// `None`.
+    /// Returns the number of values of an index, i.e. the value of its count. The indices before it
+    /// must have values. If the count is not a whole number ≥ 0, reports it and returns `None`.
     fn count(&mut self, index: &Index<'s>) -> Option<usize> {
         let (tree, name) = (&index.count, index.name.text);
         let value =
@@ -362,9 +362,9 @@ impl<'s> Lowering<'s> {
         let with_index: Vec<Span> = with_index
             .filter(|it| self.depends(*it, repetition))
             .collect();
-        // A problem of the first combination of indices often occurs with all other combinations
-        // too. If such a problem is about a value that depends on no index, it gets no label with
-        // the indices.
+        // The first combination of indices is tried first, so a problem that all combinations have
+        // is found there. If such a problem is about a value that depends on no index, a label with
+        // the indices would be misleading, so none is added.
         let is_first = values.iter().all(|&value| value == 0);
         // If an expression depends on an index, a fix must not replace it by the value that it has
         // for one combination.

@@ -259,8 +259,8 @@ impl<'s> Lowering<'s> {
     }
 
     /// Returns the meaning of an unknown field that probably stands for `field`, with a fix that
-    /// renames it and converts its value if necessary. The value of a `--set` argument cannot be
-    /// converted, so there the fix replaces only the name.
+    /// renames it and converts its value if necessary. There is no fix if the value does not suit
+    /// `field`, or if it must be converted but stands in a `--set` argument.
     fn renamed(
         &mut self,
         block: &LoweredBlock<'s>,
@@ -384,7 +384,7 @@ impl<'s> Lowering<'s> {
         let written: Option<Vec<(String, Applicability)>> = written.collect();
         let (written, applicability): (Vec<String>, Vec<Applicability>) =
             written?.into_iter().unzip();
-        // A comment between the parts would be lost, so the fix is then not safe.
+        // A comment between the elements would be lost, so the fix is not safe if there is one.
         let text = self.sources.text(value.span);
         let has_comment = text.contains("//") || text.contains("/*");
         let least = Applicability::safe_if(!has_comment);

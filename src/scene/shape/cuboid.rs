@@ -21,7 +21,8 @@ pub struct Cuboid {
     pub max: DVec3,
     /// The colour, unless the faces have colours of their own.
     pub color: Color,
-    /// The colours of the faces perpendicular to x, y and z, instead of `color`.
+    /// The colours of the faces perpendicular to x, y and z. `None` if all faces have the colour
+    /// `color`.
     pub faces: Option<[Color; 3]>,
 }
 

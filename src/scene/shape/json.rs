@@ -1,4 +1,4 @@
-//! The fields of shapes as JSON, and the vertices of triangles.
+//! Converts shapes to JSON: the values of their fields and, for a triangle, its vertices.
 
 use glam::DVec3;
 use serde_json::{Value as Json, json};

@@ -206,9 +206,9 @@ mod tests {
         source::{Source, Sources},
     };
 
-    /// Returns lists of fields that a block can have at the same time. Fields of different
-    /// alternatives of a [`Choice`](crate::schema::Choice) exclude each other, so they are in
-    /// different lists. Each alternative occurs in at least one list.
+    /// Returns lists of fields for which a block of the kind `row` can be written. Fields of
+    /// different alternatives of a [`Choice`](crate::schema::Choice) exclude each other, so they
+    /// are in different lists. Each field is in at least one list.
     fn ways(row: &'static BlockRow) -> impl Iterator<Item = Vec<&'static FieldRow>> {
         let most = row.choices.iter().map(|choice| choice.ways.len()).max();
         (0..most.unwrap_or(1)).map(move |way| {

@@ -243,8 +243,9 @@ impl<'s> Recovery<'_, 's> {
         if !(rest.iter().all(is_digits) && (is_grouped || is_decimal)) {
             return false;
         }
-        // If exactly three digits follow the only comma, the comma separates thousands, because few
-        // decimal fractions have exactly three digits. A number such as `0,125` is an exception.
+        // If exactly three digits follow the only comma, the comma is assumed to separate
+        // thousands, because few decimal fractions have exactly three digits. A number such as
+        // `0,125` is an exception.
         let is_whole_number = are_thousands && is_single && *head != "0";
         let (message, sign) = if is_grouped || is_whole_number {
             ("no commas stand in a number", "_")

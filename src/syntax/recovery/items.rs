@@ -268,8 +268,9 @@ impl<'s> Recovery<'_, 's> {
         self.items.push(Item::Bad(start.to(self.behind())));
     }
 
-    /// Skips to the next line that starts an item or a statement of another language. If a block or
-    /// a `}` ends before that line, stops directly after the first of them.
+    /// Skips to the next line that starts an item or a statement of another language. If a `{`
+    /// comes before that line, skips its block and stops after it. If a `}` comes first, stops
+    /// after the `}`.
     fn skip_lines(&mut self) {
         while self.kind(0) != TokenKind::End {
             if self.is_on_new_line(0) {

@@ -147,9 +147,9 @@ impl<'w, 's> Recovery<'w, 's> {
 
     /// Reads the item at `start` again, which follows the grammar but may have been meant
     /// otherwise. Returns the item's end if the new reading is better. A block is better if all of
-    /// its fields are known. A definition is better if mistakes were found, and each is a comment
-    /// or a function of another language. If the new reading is not better, restores the items and
-    /// problems and returns `None`.
+    /// its fields are known. A definition is better if mistakes were found, and each of them is a
+    /// comment or a function of another language. If the new reading is not better, restores the
+    /// items and problems and returns `None`.
     pub fn item_as_meant(&mut self, start: usize) -> Option<usize> {
         let (items, problems, read_to) = (self.items.len(), self.problems.len(), self.read_to);
         let slips = |this: &Self| this.context.signs.values().map(Vec::len).sum::<usize>();

@@ -98,8 +98,8 @@ proptest! {
         let none = (f64::INFINITY, f64::NEG_INFINITY);
         let (low, high) = values.fold(none, |(low, high), value| (low.min(value), high.max(value)));
         // An extreme inside the pixel is at most 1/80 from one of the tested points in x and in y,
-        // and the second derivatives are at most 2. The form at that point differs from the extreme
-        // by at most 4/80².
+        // and the second derivatives are at most 2. The form's value at this tested point therefore
+        // differs from the extreme value by at most 4/80².
         let apart = 4.0 / 6400.0;
         prop_assert!(range.low <= low && low - apart <= range.low, "{range:?}, not from {low}");
         prop_assert!(range.high >= high && high + apart >= range.high, "{range:?}, not to {high}");

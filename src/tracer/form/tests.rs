@@ -59,8 +59,8 @@ fn errors_of_forms_are_within_tight_bounds() {
         prop::array::uniform2(-2.0..2.0_f64),
         (0..SIZE, 0..SIZE, prop::array::uniform2(-0.5..0.5_f64)),
     );
-    // The errors of double-doubles are mostly far below their bounds, so many cases are needed to
-    // meet larger ones.
+    // The errors of double-doubles are mostly far below their bounds. Many cases are needed to find
+    // errors that come close to the bounds.
     let config = ProptestConfig {
         cases: 1024,
         ..ProptestConfig::default()

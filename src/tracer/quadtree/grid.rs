@@ -1,8 +1,8 @@
 //! The grid of a quadtree: whole numbers for positions in the view plane and for inverse depths.
 //!
-//! In: coordinates in the view plane, and inverse depths. Out: units of the grid, and [`Nearness`]
-//! values, the upper half of an `f64`'s bits. Both conversions are monotone, and bounds are rounded
-//! outwards.
+//! In: coordinates in the view plane, and inverse depths. Out: coordinates in units of the grid,
+//! and inverse depths as [`Nearness`] values, which have 32 bits. The conversions keep the order of
+//! the numbers, and bounds are rounded outwards.
 
 use crate::tracer::{
     bounds2d::Extent,
@@ -57,7 +57,8 @@ pub struct CellGrid {
 }
 
 impl Nearness {
-    /// A nearness that is less than that of every object. As a depth limit, it hides no object.
+    /// A value that is less than the nearness of every object. Used as a limit below which objects
+    /// are hidden, it hides none.
     pub const NONE: Self = Self(0);
 
     /// Rounds a non-negative number up. Returns the greatest value for NaN and negative numbers.
@@ -179,7 +180,7 @@ impl CellGrid {
         Some(BoundedObject {
             bounds: self.ends(extent.across)?,
             nearest: Nearness::above(extent.nearest),
-            // The index fits, because 2^32 objects would not fit into memory.
+            // The index fits into 32 bits, because 2^32 objects would not fit into memory.
             object: object as u32,
         })
     }

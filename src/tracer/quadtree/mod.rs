@@ -2,12 +2,12 @@
 //! bounds in the view plane.
 //!
 //! All rays share the eye, so that a ray is a point of the view plane and lies in exactly one cell
-//! of each level. The search for a ray therefore does not branch. An object is listed in the cells
-//! that it overlaps on the level where cells are about as large as the object. There are at most
-//! four such cells, so that the lists have at most four entries per object, whatever the objects
-//! look like. Each list is sorted by the objects' maximum inverse depth ([`Nearness`]), the
-//! greatest first. A ray that has hit an object stops reading a list at the first entry behind this
-//! object.
+//! of each level. The search for a ray therefore follows a single path from the root cell down. An
+//! object is listed in the cells that it overlaps on the level where cells are about as large as
+//! the object. There are at most four such cells, so that the lists have at most four entries per
+//! object, whatever the objects look like. Each list is sorted by the objects' maximum inverse
+//! depth ([`Nearness`]), the greatest first. A ray that has hit an object stops reading a list at
+//! the first entry behind this object.
 //!
 //! Cells have coordinates in whole numbers, and the conversion to them is monotone. The conversion
 //! can move a point of an object out of the object's bounds by one unit, but not by more. Bounds
@@ -42,8 +42,9 @@ impl Quadtree {
     }
 
     /// Calls `visit` with the objects that a ray may hit, from the largest cell down, until `visit`
-    /// fails. `visit` returns the rounded inverse depth of the nearest crossing so far; objects
-    /// entirely behind it are skipped. Returns `None` if the direction is outside of the window.
+    /// fails. `visit` returns the inverse depth of the nearest crossing so far, rounded down;
+    /// objects entirely behind this crossing are skipped. Returns `None` if the direction is
+    /// outside of the window.
     #[inline]
     pub fn visit<E>(
         &self,
@@ -54,9 +55,10 @@ impl Quadtree {
     }
 
     /// Returns the objects that rays through the rectangle `patch` of the view plane may hit, in
-    /// file order. `behind` is called with an object that fills the rectangle. It returns a rounded
-    /// inverse depth that the object has at least in the whole rectangle; objects entirely behind
-    /// this depth are left out. Returns `None` if certainly more than `most` objects are found.
+    /// file order. `behind` is called with an object whose bounds contain the rectangle. It returns
+    /// an inverse depth, rounded down: everything farther away is hidden by the object, and is left
+    /// out. Returns `None` if more than four times `most` list entries are found. An object has at
+    /// most four entries, so there are then more than `most` objects.
     pub fn within(
         &self,
         patch: &Patch,
@@ -70,7 +72,8 @@ impl Quadtree {
     }
 
     /// Returns the objects that rays through the rectangle `patch` of the view plane may hit, the
-    /// nearest first. Returns `None` if certainly more than [`OBJECTS_A_CELL`] objects are found.
+    /// nearest first. Returns `None` if [`within`](Self::within) finds more than [`OBJECTS_A_CELL`]
+    /// objects.
     pub fn nearby(&self, patch: &Patch) -> Option<Vec<BoundedObject>> {
         let mut items = self.within(patch, OBJECTS_A_CELL, |_| Nearness::NONE)?;
         items.sort_by_key(|item| Reverse(item.nearest));
@@ -78,10 +81,10 @@ impl Quadtree {
     }
 
     /// Calls `visit` with the objects of `nearby` that a ray may hit, the nearest first, until
-    /// `visit` fails. `visit` returns the rounded inverse depth of the nearest crossing so far;
-    /// objects entirely behind it are skipped. `nearby` is the result of [`nearby`](Self::nearby)
-    /// for a rectangle that contains the ray. Returns `None` if the direction is outside of the
-    /// window.
+    /// `visit` fails. `visit` returns the inverse depth of the nearest crossing so far, rounded
+    /// down; objects entirely behind this crossing are skipped. `nearby` is the result of
+    /// [`nearby`](Self::nearby) for a rectangle that contains the ray. Returns `None` if the
+    /// direction is outside of the window.
     #[inline]
     pub fn visit_nearby<E>(
         &self,

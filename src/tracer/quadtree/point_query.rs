@@ -1,7 +1,9 @@
 //! The point query: the objects that one ray may hit.
 //!
 //! In: a point in the grid. Out: the objects of the cells that contain the point, from the root
-//! cell down. The search stops reading a list at the first hidden entry.
+//! cell down. Each cell lists its objects from the nearest to the farthest. The search stops
+//! reading a list at the first object that is entirely behind a point where the ray has hit another
+//! object.
 
 use super::{
     grid::{BoundedObject, LEVELS, Nearness},
@@ -10,8 +12,8 @@ use super::{
 
 impl Cells {
     /// Calls `visit` with the objects that the ray through a point may hit, until `visit` fails.
-    /// `visit` returns the rounded inverse depth of the nearest crossing so far; objects entirely
-    /// behind it are skipped.
+    /// `visit` returns the inverse depth of the nearest crossing so far, rounded down; objects
+    /// entirely behind this crossing are skipped.
     #[inline]
     pub(super) fn visit<E>(
         &self,
@@ -38,8 +40,8 @@ impl Cells {
 }
 
 /// Calls `visit` with the objects of one list that the ray through a point may hit, the nearest
-/// first. `visit` returns the rounded inverse depth of the nearest crossing so far, which is stored
-/// in `hidden`. Stops at the first object that is entirely behind it.
+/// first. `visit` returns the inverse depth of the nearest crossing so far, rounded down, which is
+/// stored in `hidden`. Stops at the first object that is entirely behind this crossing.
 #[inline]
 pub(super) fn visit_list<E>(
     list: &[BoundedObject],

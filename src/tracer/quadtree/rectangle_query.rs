@@ -18,13 +18,13 @@ pub(super) struct Search<'a, F> {
     rectangle: &'a Rectangle,
     /// Maximum number of entries in `found`. An object has an entry for each cell that lists it.
     most: usize,
-    /// Function that is called with an object that fills the rectangle. It returns a rounded
-    /// inverse depth that the object has at least in the whole rectangle. Objects entirely behind
-    /// this depth are hidden.
+    /// Function that is called with an object whose bounds contain the rectangle. If every ray
+    /// through the rectangle hits the object, it returns the least of the object's inverse depths
+    /// there. This number is rounded down, so that the object certainly hides every object whose
+    /// inverse depths are all smaller. Otherwise, it returns a number that hides nothing.
     behind: F,
-    /// Greatest result of `behind` for the objects found so far: a rounded inverse depth that one
-    /// of these objects has at least in the whole rectangle. Objects entirely behind this depth are
-    /// hidden.
+    /// Greatest inverse depth that `behind` has returned so far. An object is hidden if its maximum
+    /// inverse depth, rounded up, is not greater than this value.
     hidden: Nearness,
     found: Vec<BoundedObject>,
 }
@@ -48,7 +48,8 @@ impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
         let mut items = self.found;
         items.retain(|item| item.nearest > self.hidden);
         items.sort_unstable_by_key(|item| item.object);
-        // An object that lies in several cells occurs several times.
+        // An object that lies in several cells has several entries, which are now next to each
+        // other. All but one are removed.
         items.dedup_by_key(|item| item.object);
         Some(items)
     }

@@ -2,7 +2,7 @@
 //!
 //! In: objects' bounds in units of the grid. Out: a list of cells, and a list of the cells'
 //! entries. A cell with many objects is divided into quarters. An object larger than the quarters
-//! stays in the cell's own list.
+//! stays in the cell's own list, so that it is not listed in many small cells.
 
 use std::{cmp::Reverse, sync::atomic::AtomicBool};
 
@@ -135,8 +135,9 @@ impl CellSquare {
         }
     }
 
-    /// Returns whether an object is larger than the cell's quarters, so that it is listed in the
-    /// cell itself. A smaller object intersects at most two quarters along each axis.
+    /// Returns whether an object is wider or taller than the cell's quarters. Such an object is
+    /// listed in the cell itself. Any other object intersects at most two quarters along each axis.
+    /// This rule therefore limits an object's entries to four.
     fn keeps(self, item: &BoundedObject) -> bool {
         let Rectangle { low, high } = item.bounds;
         (0..2).any(|axis| high[axis] - low[axis] >= 1 << (self.level - 1))

@@ -105,8 +105,8 @@ impl<'a> Quartering<'a> {
         Self { world, samples }
     }
 
-    /// Calls `visit` with the parts of the area `wanted`, until `visit` breaks. The parts cover
-    /// each pixel of the area exactly once.
+    /// Calls `visit` with the parts of the area `wanted`, until `visit` returns `Break`. The parts
+    /// cover each pixel of the area exactly once.
     pub fn parts(
         &self,
         wanted: Area,
@@ -135,24 +135,26 @@ impl<'a> Quartering<'a> {
         })
     }
 
-    /// Returns whether quartering an area costs less than tracing its samples one by one. `objects`
-    /// is the number of objects that may be seen in the area, and `asked` the mean number of
-    /// objects that one sample would test.
+    /// Returns whether quartering an area is expected to take less time than tracing its samples
+    /// one by one. With at most [`OBJECTS_A_CELL`] objects, always returns `true`. `objects` is the
+    /// number of objects that may be seen in the area. `asked` is the number of objects against
+    /// which a sample would be tested, averaged over the area.
     fn is_worth_cutting(&self, area: Area, objects: usize, asked: f64) -> bool {
         let samples = self.samples * area.pixels() as f64;
         objects <= OBJECTS_A_CELL || samples * (1.0 + asked) >= ASKED_A_CANDIDATE * objects as f64
     }
 
-    /// Returns the maximum number of candidates in an area that is quartered further. For a single
-    /// pixel, which cannot be quartered, it is the number of samples.
+    /// Returns the number of candidates above which an area is not quartered further. It is the
+    /// number of the area's samples divided by [`SAMPLES_A_CANDIDATE`], but at least the number of
+    /// samples of one pixel.
     fn most(&self, area: Area) -> usize {
         let shared = area.pixels() as f64 / SAMPLES_A_CANDIDATE;
         (self.samples * shared.max(1.0)) as usize
     }
 }
 
-/// The division of one square of the picture into parts, while it is under way. The square's side
-/// is at most [`GRID`] pixels.
+/// State of the recursive division of one square of the picture into parts. The square's side is at
+/// most [`GRID`] pixels.
 struct Cut<'a, 'b, V> {
     quartering: &'a Quartering<'a>,
     /// The part of the picture that is wanted.
@@ -164,7 +166,7 @@ struct Cut<'a, 'b, V> {
 
 impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
     /// Calls `visit` with an area, or quarters the area, depending on the candidates in it. Stops
-    /// if `visit` breaks.
+    /// if `visit` returns `Break`.
     fn cut(
         &mut self,
         area: Area,
@@ -190,8 +192,8 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
                             let slot = slots[usize::from(odd)];
                             return self.show(PicturePart::OneColor { area, slot });
                         }
-                        // Samples can use the squares only if they are certain; exact integration
-                        // allows for uncertain ones.
+                        // Samples can use the squares only if they are certain. Exact integration
+                        // also accepts uncertain squares, whose errors it bounds.
                         ShownSquares::Squares(checks) => {
                             let is_exact = self.quartering.samples.is_infinite();
                             (checks.is_certain || is_exact).then_some(checks)

@@ -106,8 +106,8 @@ fn what_a_wall_hides_is_not_found() {
 }
 
 /// Checks that testing only the objects that `nearby` finds gives each sample point the same colour
-/// as a search of the quadtree does. The scene is crowded with objects. Some pixels must turn out
-/// to have a single colour.
+/// as a search of the quadtree does. The scene is crowded with objects. The test also requires that
+/// some pixels are recognized as single-coloured.
 #[test]
 fn of_a_crowd_the_objects_nearby_are_enough() {
     let mut shapes = thousand_spheres(9.0);

@@ -37,8 +37,8 @@ pub fn prepare(
     (pixel.x, pixel.y) = (x, y);
     pixel.candidates.clear();
     match candidates {
-        // A pixel with a single candidate is the most frequent case. `push` avoids the call to copy
-        // a slice.
+        // A pixel with a single candidate is the most frequent case. `push` is used for it, because
+        // it is faster than the function that copies a slice.
         [only] => pixel.candidates.push(*only),
         _ => pixel.candidates.extend_from_slice(candidates),
     }
@@ -51,8 +51,8 @@ pub fn prepare(
 
 /// Calls `count` with the palette index of every colour that the samples of a pixel see, and with
 /// the number of samples that see it. For one colour, there can be several calls. `x` and `y` are
-/// the samples' offsets from the pixel's centre. The first `samples` entries are used; more entries
-/// pad the length to a multiple of eight.
+/// the samples' offsets from the pixel's centre. Only their first `samples` entries are samples.
+/// The entries after these pad the length to a multiple of eight.
 pub fn count(
     world: &World,
     pixel: &mut PreparedPixel,

@@ -76,10 +76,12 @@ pub(super) struct PixelSurface {
 pub(super) enum ColorPattern {
     /// One colour, given by its code.
     Plain(f64),
-    /// Two colours, separated by lines. In [`PreparedPixel::lines`], these lines come after the
-    /// surface's edges; `end` is the index after the last one. A point shows the first colour if
-    /// the product of the lines' forms is positive, and the second colour if it is negative. If
-    /// `odd` is set, the two colours are exchanged.
+    /// Two colours, separated by lines. Each line is given by a linear form in x and y that is zero
+    /// on the line. A point shows the first colour if the product of the forms' values is positive,
+    /// and the second colour if it is negative. If `odd` is set, the two colours are exchanged.
+    ///
+    /// The forms are in [`PreparedPixel::lines`], from the end of the surface's `edges` up to,
+    /// but not including, the index `end`.
     Lines { end: usize, odd: bool },
     /// The squares of a checkerboard. For each sample, a division computes the square that it hits.
     Squares(CheckerForms),

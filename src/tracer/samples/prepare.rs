@@ -26,8 +26,8 @@ use crate::{area::Area, math::UP};
 /// squares, which are below 2^53, might overflow.
 const MAX_ERROR: f64 = 1e250;
 
-/// Maximum number of lines between squares in a pixel for which the colour of a sample is found
-/// from the sides of the lines on which the sample lies. With more lines, a division computes which
+/// Maximum number of lines between squares in a pixel for which a sample's colour is found by
+/// testing on which side of each line the sample lies. With more lines, a division computes which
 /// square a sample hits. Measured: from 3 to 12, the render time does not change; with division
 /// alone, figure 9.9, the picture of the assignment, takes 11 % longer.
 const MAX_LINES: usize = 6;
@@ -217,17 +217,18 @@ impl PreparedPixel {
             let mut k = first + 1.0;
             while k <= last {
                 let line = across.less(k, below);
-                // `line` is the form of the line with the number k between squares: a positive
-                // multiple of x/square − k, or of z/square − k. If it is positive in the whole
-                // pixel, the pixel lies beyond the line, where the parity changes.
+                // `line` is a form that is zero on the line with the number k between squares: a
+                // positive multiple of x/square − k, or of z/square − k. If it is positive in the
+                // whole pixel, the first of the pixel's squares lies beyond this line, so `odd`,
+                // the parity of this square, is negated.
                 match line.range().side() {
                     Side::Above => odd = !odd,
                     Side::Below => {}
                     Side::Both => {
                         self.lines.push(line.line());
-                        // `odd` is the parity at points where the forms of all added lines are
-                        // positive. At these points, each added line changes the parity, so `odd`
-                        // is negated.
+                        // From now on, `odd` is the parity of the square in which the forms of all
+                        // added lines are positive. This square lies beyond the line that is added
+                        // now, so `odd` is negated.
                         odd = !odd;
                     }
                     Side::Unknown => return Err(Hard),

@@ -88,7 +88,7 @@ impl PreparedPixel {
 
 impl PixelSurface {
     /// Writes to `shown`, for each sample, the code of the colour that the sample sees if it hits
-    /// the surface, or [`DOUBT`].
+    /// the surface. Writes [`DOUBT`] if the colour is uncertain.
     #[inline(always)]
     fn show(
         &self,
@@ -114,7 +114,7 @@ impl PixelSurface {
 
 /// Writes to `shown` the code `even` for each sample at which an even number of the lines' forms is
 /// negative, and the code `odd` for each other sample. Writes [`DOUBT`] if a form's sign is
-/// uncertain. `sign` is a buffer.
+/// uncertain. `sign` is a buffer for intermediate results.
 #[inline(always)]
 fn between(
     lines: &[ScaledLine],
@@ -179,8 +179,8 @@ fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: 
         let ((bits0, margin0), (bits1, margin1)) = (square(n0, rads[0]), square(n1, rads[1]));
         let parity = f64::from_bits(ONE | (bits0 ^ bits1) << 63);
         let code = if parity > 0.0 { even } else { odd };
-        // The comparisons also fail for NaN, and for numbers that are too large to be rounded by
-        // adding `ROUND`, because their errors are large. The sample is then uncertain.
+        // A coordinate may be NaN, or too large to be rounded by adding `ROUND`. Its error bound is
+        // then NaN or large, so the comparisons are false, and the sample is uncertain.
         let first = if margin0 > 0.0 { code } else { DOUBT };
         let second = if margin1 > 0.0 { first } else { DOUBT };
         *shown = if below > 2.0 * UP * rad {

@@ -26,8 +26,8 @@ impl Colors {
                 .entry(color.srgb.map(f64::to_bits))
                 .or_insert_with(|| {
                     palette.push(color);
-                    // The index fits, because there are at most two colours per object, and 2^31
-                    // objects do not fit into memory.
+                    // The index fits into 32 bits, because there are at most two colours per
+                    // object, and 2^31 objects do not fit into memory.
                     (palette.len() - 1) as u32
                 })
         };
@@ -43,8 +43,8 @@ impl Colors {
         }
     }
 
-    /// Gives each object in `owners` a palette entry of its own, with an arbitrary colour. Pieces
-    /// of one owner, such as the faces of a box, share an entry.
+    /// Gives each owner a palette entry of its own, with an arbitrary colour. `owners` contains the
+    /// index of each object's owner. The faces of a box have the same owner, the box.
     pub(super) fn by_object(owners: impl Iterator<Item = usize>) -> Self {
         let of_objects: Vec<_> = owners.map(|owner| [owner as u32; 2]).collect();
         let count = of_objects

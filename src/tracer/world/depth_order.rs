@@ -50,12 +50,12 @@ pub(super) fn order_to_clip<T: Real>(
     if order.is_ok() {
         return order;
     }
-    // A surface in the other clip plane certainly has another depth than `clip`, unless the two
-    // clip planes are equal. To find out whether the surface lies in `clip`, it is therefore enough
-    // to test whether it lies in either clip plane.
+    // The test below asks whether the surface lies in the near or in the far plane, not in which of
+    // the two. This is enough: if the surface lay in the other plane than `clip`, the order would
+    // be certain here, unless the two planes are equal.
     let at = (index, crossing.part);
-    // The numbers of two different planes may agree in their first hundreds of bits, so that only
-    // the highest precision distinguishes the planes. The highest precision is used last, because
+    // The numbers of two different planes may agree in hundreds of binary digits, so that only the
+    // highest precision distinguishes the planes. The highest precision is used last, because
     // preparing objects takes long with it.
     if is_in_clip::<Double>(geometry, at) && is_in_clip::<Big>(geometry, at) {
         return Ok(Ordering::Equal);

@@ -241,11 +241,11 @@ impl World {
         let among = || among.clone();
         let (mut seen, is_sure) = first_certain!(&self.geometry, point, |r| self.seen(r, among()));
         if !is_sure {
-            // The highest precision has decided. In it, an object is hit if the ray cannot be
-            // distinguished from a ray that hits the object, even if the ray is outside of the
-            // object's bounds in the quadtree. Some callers pass only objects whose bounds contain
-            // the ray, and others pass all objects. To give all callers the same answer, objects
-            // whose bounds do not contain the ray are left out.
+            // The lower precisions were uncertain, so the highest has decided. It also counts a hit
+            // if the ray cannot be distinguished from one that hits the object, even if the ray is
+            // outside of the object's bounds in the quadtree. Some callers pass only objects whose
+            // bounds contain the ray, and others pass all objects. To give all callers the same
+            // answer, objects whose bounds do not contain the ray are left out.
             let near = self.candidates(point);
             let is_near = |object: &usize| near.binary_search(object).is_ok();
             if !among().all(|object| is_near(&object)) {
@@ -305,8 +305,8 @@ impl World {
     ) -> Result<Option<VisibleCrossing>, Doubt> {
         let r = self.geometry.fast.camera.direction(point);
         let mut nearest = None;
-        // Rounded inverse depth of the nearest crossing so far. Objects entirely behind it are
-        // hidden.
+        // Rounded inverse depth of the nearest crossing so far. Objects entirely behind this depth
+        // are hidden.
         let mut hidden = Nearness::NONE;
         let visit = |index| {
             if self.meet(&r, index, &mut nearest)?
@@ -344,9 +344,9 @@ impl World {
         candidates
     }
 
-    /// Returns the nearest crossing between the near and the far plane with the objects `among`,
-    /// which are in file order. If several crossings have equal depths, returns that of the first
-    /// object.
+    /// Returns the nearest crossing of the ray with the objects `among`, which are in file order.
+    /// Only crossings between the near and the far plane are considered. If several crossings have
+    /// equal depths, returns that of the first object.
     #[inline]
     pub(super) fn seen<T: Precision>(
         &self,
@@ -424,9 +424,9 @@ impl World {
         Ok(true)
     }
 
-    /// Returns the nearest crossing with an object between the near and the far plane, and whether
-    /// it is the object's second crossing. `first` is the object's first crossing. Returns `None`
-    /// if neither crossing lies between the planes.
+    /// Returns the ray's nearest crossing with an object, and whether it is the second crossing.
+    /// Only crossings between the near and the far plane are considered. `first` is the object's
+    /// first crossing. Returns `None` if neither crossing lies between the planes.
     #[inline]
     fn clip<T: Precision>(
         &self,

@@ -10,10 +10,10 @@ use std::{
 
 use crate::{lock::lock, math::Real, tracer::object::Object};
 
-/// Maximum number of objects that a cache keeps in one precision. With more objects, an object
-/// evicts the one in its slot. Scenes written by hand have fewer objects. The number is prime,
-/// because indices of objects in rows are often a power of two or of ten apart, and such objects
-/// must not evict each other.
+/// Maximum number of objects that a cache keeps in one precision. If a scene has more objects,
+/// several objects share a slot, which keeps the one that was requested last. Scenes written by
+/// hand have fewer objects. The number is prime, because the indices of neighbouring objects often
+/// differ by a power of two or of ten, and such objects must not share a slot.
 pub const CACHE_SLOTS: usize = 4093;
 
 /// A cache of objects in one precision. Each object is prepared when it is first requested, and

@@ -22,9 +22,9 @@ use crate::{
 };
 
 /// Evaluates `$answer` for a ray's direction `$r`, in one precision after the other, until the
-/// answer is certain. Yields the answer, and whether it was certain before the highest precision.
-/// The highest precision always gives an answer, because it treats numbers as equal if it cannot
-/// distinguish them.
+/// answer is certain. Yields the answer, and `true` if a precision below the highest one was enough
+/// for it. The highest precision always gives an answer, because it treats numbers as equal if it
+/// cannot distinguish them.
 macro_rules! first_certain {
     ($geometry:expr, $point:expr, |$r:ident| $answer:expr) => {{
         let (geometry, point): (&Geometry, &PicturePoint) = ($geometry, $point);
@@ -51,8 +51,8 @@ pub(super) use first_certain;
 pub enum Numbers {
     /// A sphere's centre and radius.
     Sphere(DVec3, f64),
-    /// All numbers of any other shape, and the number of the face if the object is a single face of
-    /// a box.
+    /// The numbers of a shape other than a sphere. If the object is a single face of a box, also
+    /// the number of the face.
     Other(Box<(Shape, Option<u8>)>),
 }
 

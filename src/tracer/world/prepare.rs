@@ -1,7 +1,7 @@
 //! The preparation of a scene for one picture.
 //!
-//! In: a scene. Out: its geometry, prepared block by block on all threads, and the quadtree over
-//! its objects' bounds.
+//! In: a scene. Out: its geometry, prepared on all threads in blocks of objects, and the quadtree
+//! over its objects' bounds.
 
 use std::sync::atomic::AtomicBool;
 

@@ -1,6 +1,6 @@
 // The fragment of the page's address: `key=value` pairs joined by `&`. It may contain the token,
-// which browsers then do not send to any server. This module must be loaded first: it removes the
-// token from the address before other modules read it.
+// since browsers send no fragment to a server. This module must be loaded first: it removes the
+// token from the address before other modules read the address.
 
 import { remember, remembered } from "./dom";
 
@@ -16,7 +16,8 @@ export function addressWith(key: string, value: string): string {
   return `${location.origin}${location.pathname}#${key}=${value}`;
 }
 
-/** Removes the token, and nothing else, from the address. Returns it, or null if there is none. */
+/** Removes the token, and nothing else, from the address. Returns the token, or null if there is
+ * none. */
 export function takeToken(): string | null {
   const rest = parts();
   const token = rest.get(TOKEN);

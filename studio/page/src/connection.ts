@@ -20,7 +20,8 @@ const TRIED_AGAIN: Closed[] = ["lost", "ended", "failed"];
  * reconnect have failed as `PAUSES` has entries. */
 export type ConnectionState = "connecting" | "open" | "silent" | Closed;
 
-/** Opens a channel. Calls `opened` with it, `receive` for each text, and `closed` at its end. */
+/** Function that opens a channel. It calls `opened` with the channel, `receive` for each text, and
+ * `closed` when the channel is closed. */
 type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void,
   closed: (why: Closed) => void) => void;
 
@@ -60,15 +61,17 @@ class Connection implements Transport {
   /** Number of the latest attempt to connect, counted from 1. Events of earlier attempts are
    * ignored. */
   private current = 0;
-  /** Time of the last message from the server, in ms. */
+  /** Time of the last message from the server, in ms since the page was loaded. */
   private heard = 0;
-  /** Time of the test request that has no reply yet, in ms; 0 if there is none. */
+  /** Time at which the test request that has no reply yet was sent, in ms since the page was
+   * loaded; 0 if there is no such request. */
   private asked = 0;
   private hangs = false;
 
   constructor(private readonly connector: Connector) {
     setInterval(() => this.listen(), 250);
-    // Browsers stop the timers of hidden pages, so an open test request is then forgotten.
+    // Browsers stop the timers of hidden pages, so the time that an open test request has waited
+    // does not show whether the server replies. Therefore, the request is forgotten.
     document.addEventListener("visibilitychange", () => (this.asked = 0));
   }
 

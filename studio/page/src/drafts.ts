@@ -31,8 +31,8 @@ let isKept = false;
 /** Drafts that are not stored yet, by key. The host stores them or, if there is no host, the
  * browser. Null stands for a draft that must be deleted. */
 const due = new Map<string, Draft | null>();
-/** Last draft that the user has restored. Its stored copy is kept until its text is saved to the
- * file, since Undo can remove the text from the editor. */
+/** Last draft that the user has restored; null if there is none. Its stored copy is kept until its
+ * text is saved to the file, since Undo can remove the text from the editor. */
 let restored: Draft | null = null;
 /** Drafts that were offered and neither restored nor discarded yet, the newest first. */
 let offers: Draft[] = [];
@@ -82,8 +82,8 @@ function newDraft(): Draft {
   return { id, name, text, base, time: Math.floor(Date.now() / 1000) };
 }
 
-/** Offers the drafts of other pages. `hosts` are those that the host has stored; they are offered
- * at once, and those in the browser as soon as they are read. */
+/** Offers the drafts of other pages. Drafts that the host has stored, `hosts`, are offered at once;
+ * drafts in the browser are offered as soon as they are read. */
 export async function offerDrafts(hosts: Draft[] = []): Promise<void> {
   offers = hosts;
   show();
@@ -115,9 +115,9 @@ function answer(draft: Draft, isRestored: boolean): void {
   if (isRestored) {
     due.delete(draft.id);
     restored = draft;
-    // Before the host has sent its state, its drafts are unknown: it may have stored this draft
-    // under the same key. The page takes over this key, so that later changes replace the host's
-    // copy.
+    // Before the host has sent its state, it is not known whether the host has stored this draft,
+    // too. Therefore, the page stores its later drafts under this draft's key, so that they replace
+    // the host's copy, if there is one.
     if (!files.isTold) id = draft.id;
     files.restore(draft.text, draft.base, draft.name);
   }

@@ -39,7 +39,7 @@ for (const type of ["pointerdown", "keydown"]) addEventListener(type, () => {
 }, { capture: true });
 
 let count = 0;
-/** Settles when all earlier drags have finished. */
+/** Promise that settles when all earlier drags have finished. */
 let ended: Promise<unknown> = Promise.resolve();
 
 /** A drag. It requests one edit at a time, always for the newest point of the pointer. */
@@ -52,7 +52,7 @@ export class Drag {
   private over = false;
   private gesture = new Gesture(editor.view);
   private readonly holding: Promise<Held | null>;
-  /** Settles when the edit for the last point has been made. */
+  /** Promise that settles when the edit for the last point has been made. */
   private work: Promise<unknown>;
   private settle: () => void = () => {};
   private letGo: () => void = () => {};

@@ -37,8 +37,8 @@ const wholeCharacters = EditorState.transactionFilter.of(transaction => {
   return changes.length === 0 ? transaction : [transaction, { changes, sequential: true }];
 });
 
-/** Inserts typed text if the selection spans several lines, or if the text does. The browser is not
- * left to do so: it would add inline styles, which the page's content security policy forbids. */
+/** Inserts typed text if the selection or the text spans several lines. In these cases, the browser
+ * would add inline styles, which the page's content security policy forbids. */
 const replacedLines = EditorView.domEventHandlers({
   beforeinput({ inputType, data, isComposing }, view) {
     const { state } = view;
@@ -116,8 +116,7 @@ class SceneEditor {
       parent,
       extensions: [
         nonce === undefined ? [] : EditorView.cspNonce.of(nonce),
-        // The editor cannot be edited before the scene has arrived, because the scene replaces its
-        // text.
+        // The text cannot be edited before the scene has arrived, because the scene replaces it.
         EditorState.readOnly.of(true),
         wholeCharacters,
         lineNumbers(), lintGutter(), highlightActiveLine(), highlightActiveLineGutter(),
@@ -206,8 +205,8 @@ class SceneEditor {
   }
 
   /** Replaces the text by changing only what differs, so that the cursor stays. A pure insertion or
-   * deletion is moved to the start of its line if the result is the same. An inserted block then
-   * covers its own lines, rather than the end of the block before it and its own beginning. */
+   * deletion is moved to the start of its line if the result is the same. For example, an inserted
+   * block is then a change of whole lines, although it begins like the block before it. */
   replace(content: string): void {
     const [old, text] = [this.text, withLf(content)];
     let end = 0;

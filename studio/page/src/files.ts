@@ -21,7 +21,8 @@ const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": ".scn"
 class Scene {
   /** Content of the file when it was last read; null if there was no file. */
   seen: string | null = null;
-  /** Content of the file when editing began. If the file now differs from it, Save asks first. */
+  /** Content of the file when editing began; null if there was no file. If the file now differs
+   * from it, Save asks first. */
   base: string | null = null;
   /** Whether the file was removed after it was read. */
   isGone = false;
@@ -62,8 +63,9 @@ class Files {
   onLeave: () => void = () => {};
   /** Whether the host has sent its scene to this page. */
   isTold = false;
-  /** Draft or link that was restored before the host sent its scene; null if there is none. `base`
-   * is the content of the draft's file when its editing began, and undefined for a link. */
+  /** Draft or link that was restored before the host sent its scene; null if there is none. For a
+   * draft, `base` is the content of its file when editing began, or null if there was no file; for
+   * a link, it is undefined. */
   private early: { base: string | null | undefined; text: string } | null = null;
   /** The scene of the host's file. */
   private hosts = new Scene();
@@ -99,8 +101,8 @@ class Files {
       effects: turns.of({ from: this.at, to }) });
   }
 
-  /** Makes the scene that the editor now shows the current one, after Undo, Redo or the start of a
-   * new scene. If that scene was saved under another name, its newest copy is made current. */
+  /** After Undo, Redo or the start of a new scene, the editor shows another scene. Makes this scene
+   * the current one or, if it was saved under another name, its newest copy. */
   follow(transactions: readonly Transaction[]): void {
     for (const { effects } of transactions) for (const it of effects) {
       if (it.is(turns)) for (let at: Scene | null = it.value.to; at; at = at.copy) this.at = at;
@@ -150,8 +152,8 @@ class Files {
         this.restore(early, this.early.base);
         editor.view.dispatch({ selection });
         // Without a host, the text of a restored link remains in the page's address, so it is not
-        // lost if it is never saved. It is therefore treated as the initial text of a new scene,
-        // which need not be saved.
+        // lost if the user never saves it. It is therefore treated as the initial text of a new
+        // scene, which need not be saved.
         if (!isServed && this.early.base === undefined) this.at.untouched = this.early.text;
       }
       if (saved && text === null) this.tellGone(reason);
@@ -234,8 +236,8 @@ class Files {
     try {
       const answer = await connection.request<Saved>("studio/save", about);
       if (answer.ok) this.saved(scene, name, text);
-      // If the page shows another scene by now, the user cannot choose between the two texts, so
-      // the save fails.
+      // The file was changed by another program. If the page shows another scene by now, the user
+      // cannot choose between the page's and the file's text, so the save fails.
       else if (this.at !== scene) throw new Refusal(0, `${name} is not saved: it was changed.`);
       else if (answer.text === null) this.changed(null);
       else this.ask(answer.text);

@@ -46,7 +46,7 @@ class Frames {
   onRest: () => void = () => {};
   /** The drag that is under way; null if there is none. */
   dragging: object | null = null;
-  /** Settles when the newest text's coarse picture has arrived or failed. */
+  /** Promise that settles when the newest text's coarse picture has arrived or failed. */
   coarse: Promise<unknown> = Promise.resolve();
 
   /** The picture that the page shows, with its request. The picture may be of an older text. */

@@ -100,7 +100,8 @@ export class Gesture {
     this.current = view.state.doc;
   }
 
-  /** Ends the gesture. If the text is the initial one again, no trace of it stays in Undo. */
+  /** Ends the gesture. If the text is the same as before the gesture, Undo does not know of the
+   * gesture. */
   end(): void {
     if (this.over) return;
     if (this.isAlone && this.current.eq(this.base)) return this.cancel();

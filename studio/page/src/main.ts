@@ -126,8 +126,9 @@ let waiting: HostedFile | null = null;
 async function hosted(file: HostedFile): Promise<void> {
   await linked;
   const first = !files.isTold;
-  // During a drag, the host's file waits until the drag ends. A playing slider counts as a drag
-  // that may last long, so it is stopped.
+  // If new content of the host's file arrives during a drag, it is handled when the drag ends.
+  // While a slider plays, `frames.dragging` is set as in a drag, possibly for a long time, so the
+  // slider is stopped.
   stop();
   waiting = frames.dragging === null ? null : file;
   if (waiting !== null) return;

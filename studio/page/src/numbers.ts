@@ -118,7 +118,7 @@ const sliderField = StateField.define<number | null>({
     const { changes, docChanged, effects, selection } = transaction;
     const next = effects.findLast(it => it.is(openSlider));
     if (next !== undefined) return next.value;
-    // Typing closes the slider. Changes by the slider itself do not.
+    // Typing or moving the cursor closes the slider. Changes by the slider itself do not.
     const isTyped = docChanged && transaction.isUserEvent("input");
     return open === null || isTyped || selection !== undefined ? null : changes.mapPos(open, -1);
   },
@@ -201,7 +201,7 @@ export const numberControls: Extension = [
       const at = view.posAtCoords({ x: event.clientX, y: event.clientY });
       return scrub(event, at === null ? null : literalAt(at));
     },
-    // While the Alt key is held, a press must not begin a selection.
+    // While the Alt key is held, a drag changes a number, so a press must not begin a selection.
     mousedown: event => event.altKey,
     click({ altKey }, { state }) {
       const literal = state.selection.main.empty && !altKey ? atCursor() : null;

@@ -30,7 +30,7 @@ function describe(objects: readonly ListedObject[]): void {
   const more = objects.length < 1000 ? objects.length - DESCRIBED : "many";
   if (objects.length > DESCRIBED) places.push(`${more} more`);
   const text = places.join("; ") || "A scene without objects";
-  // The first description is not announced.
+  // The first description is not announced, since it does not describe a change.
   if (described !== "" && described !== text) setText(byId("seen"), text);
   described = text;
   picture.canvas.setAttribute("aria-label", text);

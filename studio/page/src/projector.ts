@@ -9,9 +9,9 @@ const KEY = "projector";
 const of = inAddress(KEY);
 export const isProjector = of !== null;
 
-/** Name of this tab's broadcast channel before it was reloaded; null if no projector window has
- * requested pictures from the tab. The tab keeps the name, so that open projector windows continue
- * to get pictures. */
+/** Name of the broadcast channel that this tab used before it was reloaded; null if no projector
+ * window has requested pictures from this tab. A reloaded tab uses the same channel, so that open
+ * projector windows continue to get pictures. */
 const known = remembered(KEY, "sessionStorage");
 const name = of ?? known ?? `${Date.now()}-${Math.random().toString(36).slice(2)}`;
 const channel = new BroadcastChannel(`pinhole-${name}`);

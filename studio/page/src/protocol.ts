@@ -53,8 +53,8 @@ export interface Limits {
   least: number | null; most: number | null; step: number; decimals: number; ends: [number, number];
 }
 /** A definition with `let`. `limits` is null if its value is neither a number nor an angle. `note`
- * is a message for the user about the comment after the definition: it is no valid range, or the
- * slider's range differs from it. */
+ * is a message for the user if the comment after the definition is no valid range, or differs from
+ * the slider's range. */
 export interface Slider { name: string; range: Range; limits: Limits | null; note: string | null }
 
 /** Edits that add a block, the name of its object, and an offset in the block for the cursor. */
@@ -83,7 +83,7 @@ export interface HostedFile {
 }
 
 /** Unsaved text of the page with the key `id`. `base` is the content of the file when editing
- * began. `time` is when the draft was made, in seconds since 1970. */
+ * began; null if there was no file. `time` is when the draft was made, in seconds since 1970. */
 export interface Draft { id: string; name: string; text: string; base: string | null; time: number }
 
 /** Whether the file was saved. If not, `text` is the file's current content. */

@@ -33,8 +33,8 @@ class Selection {
   choices = 0;
   private placed: Placed[] = [];
   /** Object that the user has chosen; null if the user chose to select nothing; undefined before
-   * any choice. It is stored because the cursor alone does not tell which of the objects that a
-   * loop creates from one block is meant. */
+   * any choice. It is stored because a loop may create several objects from one block, and the
+   * cursor does not tell which of them is meant. */
   private chosen: SceneObject | null | undefined;
   private readonly handles = byId("handles");
   private readonly menu = byId<HTMLSelectElement>("objects");

@@ -87,7 +87,7 @@ fn ask_about_all(analysis: &Analysis<'_>) {
 
 sampled_and_exhaustive!(every_prefix_and_edit_of_an_example_gets_consistent_editor_answers);
 
-/// Tests an example, and every beginning of it that ends at every second offset. Also reads the
+/// Tests an example, and the beginnings of it that end at every second character. Also reads the
 /// example without one of its bytes, and tests it without eight successive characters, as when a
 /// user rewrites a part of a line.
 fn every_prefix_and_edit_of_an_example_gets_consistent_editor_answers(effort: Effort) {

@@ -71,7 +71,8 @@ fn sphere_coverage_matches_the_area_of_an_ellipse() {
 #[test]
 fn board_coverage_from_above_matches_the_closed_form() {
     // In the first two rows, the eye is at the height 1 and the pixel shows the area [−1, 1]² of
-    // the board. Mirroring this area exchanges the two colours, so half of it is white.
+    // the board. Mirroring this area in the z axis exchanges the two colours, so half of it is
+    // white.
     for (eye, square, expected) in [
         ("(0, 1, 0)", 1.0, 0.5),
         ("(0, 1, 0)", 0.125, 0.5),

@@ -186,8 +186,8 @@ fn fixes_in_repeated_objects_keep_their_index() {
 }
 
 /// A mistake after the `for` of a block does not affect the next block. A repeated checkerboard
-/// causes only one warning. A `let` after a block can define the name of the block's index, also if
-/// values are overridden by `--set`.
+/// causes only one warning. A `let` after a block may have the same name as the block's index; this
+/// holds even if `--set` overrides a value.
 #[test]
 fn a_repetition_does_not_affect_the_text_around_it() {
     for (text, set, expected) in [

@@ -5,10 +5,10 @@ mod files;
 mod interrupted;
 mod statistics;
 
-use pinhole::scene::Method;
+use pinhole::{report::speed::Mixture, scene::Method};
 use serde_json::{Value, json};
 
-use crate::program::Folder;
+use crate::{program::Folder, scenes::read};
 
 const SCENE: &str =
     "image { width 48 height 32 } camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }
@@ -175,6 +175,22 @@ fn the_inner_edges_of_a_box_are_edges_and_no_board() {
     // board, so the number of edge pixels must not fall.
     let on_board = shares("colors (tan, wheat, peru) } checkerboard {}");
     assert!(on_board[0] >= faces[0] && on_board[1] > 0.0, "{on_board:?}");
+}
+
+/// Edges between objects of the same colour are no less edges, and the board's pixels are no fewer.
+#[test]
+fn colors_of_objects_do_not_change_the_share_of_the_board() {
+    let balls = |colors: [&str; 2]| {
+        let [a, b] = colors;
+        let scene = format!(
+            "image {{ width 48 height 32 }} camera {{ eye (0, 1.5, 6) lookat (0, 0.5, 0) }} checkerboard {{}}
+            for i in -2 to 3 {{ sphere {{ center (0.8 * i, 0.5, 0) radius 0.5 color if i % 2 == 0 then {a} else {b} }} }}"
+        );
+        Mixture::of(&read(&scene))
+    };
+    let [same, different] = [["red", "red"], ["red", "blue"]].map(balls);
+    assert_eq!(same, different);
+    assert!(same.board > 0.05 && same.edges > 0.05, "{same:?}");
 }
 
 fn number(value: &Value) -> f64 {

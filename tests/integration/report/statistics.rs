@@ -200,6 +200,9 @@ fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
         1 1 0.4  4 1 0.4 -> 0.1
         1 1 0.1  4 1 0.4 -> 0.01
         4 1 0.4 -> 0.1
+        -- A slope that may be noise, and a last part of a bent line that is too short, predict nothing.
+        4 4 0.4  16 16 0.399  64 64 0.398 -> 0.1
+        15 15 0.4  60 60 0.1  61 61 0.09 -> 0.01
     ") {
         let (points, expected) = (numbers(points), numbers(expected));
         let found = estimate(points.as_chunks().0, expected[0]);

@@ -58,8 +58,8 @@ fn the_extra_samples_are_spread_evenly_in_both_directions() {
 #[test]
 fn the_last_pixel_of_the_largest_picture_gets_the_extra_sample() {
     let side = 1 << 20;
-    // There is one sample more than an equal share for each pixel. The last pixel of the Hilbert
-    // curve gets it. The curve ends in the top right corner.
+    // The total is one more than a multiple of the number of pixels, so one pixel gets an extra
+    // sample. This is the last pixel of the Hilbert curve. The curve ends in the top right corner.
     let sampling = sampling_with_total(Method::Random, (1 << 40) + 1, 0, [side, side]);
     let corners = [(0, 0), (0, side - 1), (side - 1, side - 1), (side - 1, 0)];
     assert_eq!(corners.map(|(x, y)| sampling.count(x, y)), [1, 1, 1, 2]);

@@ -13,8 +13,8 @@ use crate::math::{Double, Real};
 
 /// Maximum truncation error of a sum over an edge's crossings, as a fraction of the pixel's
 /// tolerance, if the depth less than doubles along the edge. A thousandth hardly adds to the
-/// pixel's error. An edge with a large tolerance of its own may use the fraction
-/// [`LATER_TERMS_SHARE`] of that tolerance, if this is more.
+/// pixel's error. The maximum is the fraction [`LATER_TERMS_SHARE`] of the edge's own tolerance
+/// instead if this is more.
 const LEVEL_TRUNCATION: f64 = 1e-3;
 /// Minimum ratio of the depth in the middle of an edge to the change of the depth along the edge,
 /// at which the depth is treated as constant. This approximation adds at most 4/STEADY, about 1e-6,
@@ -56,8 +56,9 @@ pub(super) fn sum(
         phases[1] = ends[1].map(|x| -x);
     }
     // By Abel's inequality, the sum of a mode over the crossings is at most 2/|1 − e^iθ| ≤ π/|θ|
-    // times the mode's first term. A mode is skipped if this bound is small enough. All skipped
-    // modes together add little to the truncation error, because Σ n^−2 over the odd n is π²/8.
+    // times the mode's first term. Mode n is skipped if this bound is at most n^−2·`neglected`. All
+    // skipped modes together are then at most π²/8·`neglected`, because Σ n^−2 over the odd n is
+    // π²/8.
     let abel = PI
         * amplitudes
             .iter()
@@ -88,16 +89,16 @@ pub(super) fn sum(
     // If the depth m is treated as constant, m^−s is replaced by its value in the middle of the
     // edge, where s is 3, 4 or 5. The relative error is at most s·gN/2m. Here N is the number of
     // crossings, and g is the change of m from one crossing to the next. If m is not treated as
-    // constant, each of the two Lerch series has an error of about 500 roundings of w/2 times its
-    // first term, and a truncation error of at most 0.04·s·(s + 1)/w² of its first term.
+    // constant, two Lerch series are used. Relative to its first term, each has a rounding error of
+    // about 500·w/2 roundings and a truncation error of at most 0.04·s·(s + 1)/w².
     let model = if is_steady {
         4.0 / STEADY
     } else {
-        1000.0 * UNIT * w / lines + 2.4 / (w * lines)
+        500.0 * UNIT * w / lines + 2.4 / (w * w * lines)
     };
-    // Up to mode n, the phase of each end is rotated n/2 times, each time by a product with four
-    // roundings. For two ends, this makes 4n roundings. The rotations are computed numbers with as
-    // many roundings of their own. A mode has about 30 more operations at each end.
+    // Up to mode n, the phase at each end of the edge is multiplied n/2 times by a rotation. Each
+    // product has four roundings, which makes 4n roundings at the two ends. The rounding errors of
+    // the rotations add up to as much again. A mode has about 30 more operations at each end.
     let rounding = UNIT * (64.0 + 8.0 * last);
     BoundedSum {
         value,
@@ -178,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_series_has_before_another_begins() {
+    fn partial_sums_of_lerch_series() {
         for theta in [0.0, 1e-6, -1e-3, 0.02, 0.7, 3.0, -PI] {
             let found = partial(theta, 5000.0, 3000.0, places(theta, 3000.0));
             for (s, found) in (3..).zip(found) {

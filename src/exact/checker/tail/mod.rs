@@ -54,13 +54,14 @@ use crate::math::{Double, Real};
 /// crossings are added one by one, with all terms, until this error is small enough.
 const MODE_TERMS: usize = 3;
 
-/// Maximum number of crossings of an edge that are all added one by one. With more crossings,
-/// Fourier modes are tried. Adding 20,000 crossings takes 60 µs, 3 ns each. Not critical: with 5000
-/// or 80,000, the measured running time changes by less than 10 %.
+/// Maximum number of crossings of an edge at which all of them are added one by one, without trying
+/// Fourier modes. Adding 20,000 crossings takes 60 µs, 3 ns each. Not critical: with 5000 or
+/// 80,000, the measured running time changes by less than 10 %.
 const MAX_DIRECT: f64 = 20_000.0;
-/// Maximum number of an edge's crossings that are added one by one. It is also the maximum number n
-/// of a Fourier mode. A bound of the remaining crossings or modes is added to the error. Adding
-/// 300,000 crossings or modes takes a few milliseconds.
+/// Maximum number of an edge's crossings that are added one by one if Fourier modes alone do not
+/// give the sum within the tolerance. It is also the maximum number n of a Fourier mode. A bound of
+/// the remaining crossings or modes is added to the error. Adding 300,000 crossings or modes takes
+/// a few milliseconds.
 const MAX_TERMS_ADDED: f64 = 300_000.0;
 /// Fraction of an edge's tolerance up to which the sum over the edge's crossings is neglected: it
 /// is taken as 0, and its upper bound is added to the error. Skipped Fourier modes may use up the
@@ -83,7 +84,7 @@ const MODE_WORK: f64 = 1.0 / 4.0;
 /// Computes the alternating sum Σ (−1)^j·X over all crossings j of an edge with lines of the board.
 /// `series` gives X, the edge's contribution at a crossing. `tolerance` limits the truncation
 /// error. Returns 0 with an upper bound of the sum's absolute value if the sum is negligible or the
-/// budget does not afford it.
+/// budget is too small.
 pub(super) fn sum(
     all: &LineCrossings,
     series: &EdgeSeries,
@@ -156,8 +157,8 @@ fn amplitudes(series: &EdgeSeries, first: f64, next: impl Fn(f64) -> f64) -> [f6
 
 /// Returns the number of the last Fourier mode to compute, and a bound on the sum of all later
 /// modes. `size` must be such that mode n is at most `size`·n^−3. The later modes add up to less
-/// than a quarter of `limit`, unless this takes more than [`MAX_TERMS_ADDED`] modes. Returns `None`
-/// if the bound is not less than `trivial`, or if the budget does not afford the modes.
+/// than a quarter of `limit`, except if the number is limited by [`MAX_TERMS_ADDED`]. Returns
+/// `None` if the bound is not less than `trivial`, or if the budget is too small for the modes.
 fn last_mode(size: f64, limit: f64, trivial: f64, budget: &PixelBudget) -> Option<(f64, f64)> {
     // The sum of n^−3 over the odd n beyond an integer Q is at most 1/(4Q²). Here, Q is `last` − 1.
     let last = ((size / limit).sqrt().ceil() + 1.0).clamp(3.0, MAX_TERMS_ADDED);

@@ -51,13 +51,15 @@ pub(super) fn start(all: &LineCrossings, series: &EdgeSeries, tolerance: f64) ->
     let kappa =
         (factor * 4.0 / (PI * PI * PI) / (2.0 * g) / (4.0 * BEYOND_LAST_SHARE * tolerance)).sqrt();
     let cheapest = (0.5 * MODE_COST * kappa * g).sqrt();
-    // At the depth `nothing`, the rest of the sum is usually negligible: the first terms of the
-    // edge's series ([`EdgeSeries`]) at all later crossings add up to at most half of what
-    // `SKIPPED_SHARE` allows. At the depth m, the first term is at most `factor`·½/π·m^−3.
+    // From the depth `nothing` on, the rest of the sum is usually negligible (`SKIPPED_SHARE`).
+    // Half of the error that this fraction allows is reserved for the first terms of the edge's
+    // series ([`EdgeSeries`]) at all later crossings. At the depth m, the first term is at most
+    // `factor`·½/π·m^−3.
     let nothing = (factor * 0.25 / PI / g / (0.5 * SKIPPED_SHARE * tolerance)).sqrt() + g;
-    // `steep` and `fourth` are depths at which two errors reach their limits. The truncation error
-    // of a mode falls as w^−5, and the sum of the terms of the series X from the fourth term on as
-    // m^−5. The factor of the fourth term is 0 if X has fewer terms.
+    // `steep` and `fourth` are the depths at which two errors are as large as their fractions of
+    // the tolerance allow. The truncation error of a Fourier mode is proportional to m^−5, where m
+    // is the depth. So is the sum of the terms of the series X from the fourth term on. The factor
+    // of the fourth term is 0 if X has fewer terms.
     let steep = g * libm::pow(factor / (g * g * g) / (LERCH_SHARE * tolerance), 0.2);
     let fourth = series.factors[4].abs() / (10.0 * PI * PI * PI * PI * g);
     let fourth = libm::pow(fourth / (LATER_TERMS_SHARE * tolerance), 0.2);
@@ -140,8 +142,9 @@ pub(super) fn sum_from(
     // Σ n^−3 < 1.06.
     let curvature = 1.06 * 0.04 * u2 * u3 * (12.0 * first + 20.0 * second * u + 30.0 * third * u2);
     let later = bound_of(MODE_TERMS + 1..=series.terms);
-    // The exponential integrals have errors of up to 1e-14, or 90 roundings. The Lerch series V_s
-    // have errors of less than 500 roundings of w^−2. In mode n, the rotation of the phase adds n
+    // The exponential integral F_3 has an error of up to 1e-14, or 90 roundings. F_5 has one of up
+    // to 1e-13, but its factor is smaller by the square of the depth. The error of a Lerch series
+    // V_s is less than 500 roundings, relative to w^−2. In mode n, the rotation of the phase adds n
     // roundings.
     let rounding = 1000.0 * UNIT * first * all_terms * u2;
     BoundedSum {

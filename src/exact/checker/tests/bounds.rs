@@ -1,5 +1,5 @@
-//! Compares the integrals of boards, and their error bounds, with sums over squares that are
-//! computed with hundreds of bits of precision.
+//! Checks the integrals of boards, and their error bounds. The reference is a sum over the board's
+//! squares, computed in multiple precision.
 
 use std::cell::RefCell;
 

@@ -1,5 +1,5 @@
-//! Compares the integrals of boards over segments, and their error bounds, with sums over squares
-//! that are computed with hundreds of bits of precision.
+//! Checks the integrals of boards over segments, and their error bounds. The reference is a sum
+//! over the board's squares, computed in multiple precision.
 
 use std::cell::RefCell;
 
@@ -18,7 +18,7 @@ use crate::{
     },
 };
 
-/// An arc of a conic, with coordinates of hundreds of bits of precision.
+/// An arc of a conic, with coordinates in multiple precision.
 struct ExactArc {
     points: [Point; 3],
     weight: N,

@@ -1,5 +1,5 @@
-//! Compares the results of batched pixels, and their error bounds, with sums over squares that are
-//! computed with hundreds of bits of precision.
+//! Checks the results of batched pixels, and their error bounds. The reference is a sum over the
+//! board's squares, computed in multiple precision.
 
 use std::cell::RefCell;
 
@@ -12,10 +12,12 @@ use crate::reference::{
     tightness::Tightness,
 };
 
-/// Returns the linear forms that map a pixel to a board at the height `y`, below `eye`.
+/// Returns linear forms of the position within a pixel. Their quotients are the coordinates that
+/// the position shows on a board at the height `y`, below `eye`. The coordinates are in squares
+/// with the side `square`.
 ///
-/// The ray r from the eye e meets the board where x = e_x + (y − e_y)·r_x/r_y, and likewise z.
-/// Every component of r is a linear form of the position in the pixel.
+/// The ray r from the eye e meets the board at x = e_x + (y − e_y)·r_x/r_y. The formula for z has z
+/// in place of x. Every component of r is a linear form of the position in the pixel.
 fn forms(oracle: &Oracle, pixel: &BoardPixel, eye: DVec3, [y, square]: [f64; 2]) -> ExactBoard {
     let number = |x| oracle.number.exact(x);
     let ray = |x, y| oracle.direction(pixel.x, pixel.y, dvec2(x, y));
