@@ -195,9 +195,11 @@ pub fn drag(
         let (changes, rounding) = together(&changes, decimals);
         let changes = &changes;
         let edits = edits(analysis, block, changes, &rounding);
-        // If the drag snaps back to the old position, no edit is needed.
+        // If the drag snaps back to the old position, no edit is needed. If the numbers of the text
+        // are in another unit than the grid, they may also have too few decimals yet.
         let is_back = snapped.is_some() && rounded(current, changes, &rounding) == Some(current);
-        if is_back || (snapped.is_some() && edits.as_ref().is_some_and(Vec::is_empty)) {
+        let is_unchanged = snapped.is_some() && edits.as_ref().is_some_and(Vec::is_empty);
+        if is_back || (is_unchanged && view.agree(ideal, current, tolerance)) {
             return Ok(Dragged::default());
         }
         let Some(edits) = edits.filter(|edits| !edits.is_empty()) else {

@@ -6,11 +6,12 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{camera, handles::unit};
+use super::{camera, handles::unit, outside::camera_handles};
 use crate::{
     math::{Angle, trig},
     projection::Projection,
-    scene::{Camera, FieldOwner, Image, Lens, Scene, View},
+    scene::{Camera, FieldOwner, Image, Lens, Scene, Shape, View},
+    schema::CAMERA,
 };
 
 /// Angle, in degrees, that the height of the observer's picture takes up unless the client names
@@ -20,7 +21,7 @@ pub const USUAL_FOV: f64 = 30.0;
 
 /// Part of the observer's picture that the shown points fill at most. The rest is a margin, in
 /// which a handle can be dragged outwards, and labels have room. Chosen by eye.
-const FILLED: f64 = 0.8;
+const FILLED: f64 = 0.75;
 
 /// Maximum distance from the eye to the point that the camera looks at, as a multiple of the
 /// distance from the eye to a corner of the window. A point farther away is left out, since the
@@ -168,9 +169,10 @@ pub fn beside(camera: &Projection) -> DVec3 {
     level.cross(DVec3::Y) * 0.72 - level * 0.55 + DVec3::Y * 0.42
 }
 
-/// Returns the points that an observer must see: the eye, the corners of the window, the point that
-/// the camera looks at, and the extreme points of the objects near them. Objects whose radius or
-/// distance from the eye is large compared with these are left out.
+/// Returns the points that an observer must see: the eye with its up vector, the corners of the
+/// window, the point that the camera looks at, and the extreme points of the objects near them: of
+/// the nearest object, and of those that are not much larger or farther away than it, the window
+/// and that point.
 fn shown_points(scene: &Scene, own: &Projection) -> Vec<DVec3> {
     let (eye, d) = (own.eye, scene.camera.view_height / (own.pitch * own.size.y));
     let corners = [
@@ -181,22 +183,28 @@ fn shown_points(scene: &Scene, own: &Projection) -> Vec<DVec3> {
     ];
     let corners = corners.map(|corner| own.at_depth(corner, d));
     let window = corners[0].distance(eye);
-    let distance = camera::distance(scene);
-    let distance = Some(distance).filter(|it| *it < FARTHEST * window);
-    let reach = 1.6 * distance.unwrap_or(0.0).max(window);
+    let is_within = |distance: &f64| *distance < FARTHEST * window;
+    let distance = Some(camera::distance(scene)).filter(is_within);
+    let bodies = || {
+        let shapes = scene.objects.iter().map(|object| &object.shape);
+        let spheres = shapes.filter_map(Shape::bounding_sphere);
+        spheres.map(|(middle, radius)| (middle, radius, middle.distance(eye) + radius))
+    };
+    let nearest = bodies().map(|(.., end)| end).filter(is_within);
+    let nearest = nearest.reduce(f64::min);
+    let seen = [distance, nearest].into_iter().flatten();
+    let reach = 1.6 * seen.fold(window, f64::max);
     let mut points = vec![eye];
     points.extend(corners);
     points.extend(distance.map(|distance| eye + own.ahead * distance));
-    let bodies = scene
-        .objects
-        .iter()
-        .filter_map(|object| object.shape.bounding_sphere());
-    let is_small = |&(middle, radius): &(DVec3, f64)| {
-        radius < reach && middle.distance(eye) + radius < 1.5 * reach
-    };
-    for (middle, radius) in bodies.filter(is_small) {
-        points.extend(DVec3::AXES.map(|axis| middle + axis * radius));
-        points.extend(DVec3::AXES.map(|axis| middle - axis * radius));
+    let handles = camera_handles(&scene.camera, &scene.image).into_iter();
+    let up = handles.filter(|(name, _)| *name == CAMERA.up.name);
+    points.extend(up.map(|(_, at)| at));
+    for (middle, radius, end) in bodies() {
+        if radius < reach && end < 1.5 * reach {
+            points.extend(DVec3::AXES.map(|axis| middle + axis * radius));
+            points.extend(DVec3::AXES.map(|axis| middle - axis * radius));
+        }
     }
     let most = DVec3::splat(MOST);
     let is_number = |point: &DVec3| !point.is_nan();

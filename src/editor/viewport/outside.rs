@@ -1,10 +1,9 @@
 //! Draws the scene's camera as an observer beside it sees it, and moves it by its handles there.
 //!
 //! In: the scene's camera, and the projection of the observer. Out: lines and handles in the
-//! observer's picture; the camera after a handle was dragged. The handle of a lens depends on the
-//! field that gives it: the window of a camera with `d` moves along the view axis, and its edge
-//! changes `view_height`; the window of a camera with `fov` slides along the edges of the frustum
-//! by `view_height`, and its edge changes the angle.
+//! observer's picture; the camera after a handle was dragged. The window moves along the view axis
+//! and keeps its size: this changes `d`, or the angle of a camera that has `fov` or `hfov`. Its edge
+//! changes `view_height`, or opens that angle.
 
 use glam::{DVec2, DVec3};
 
@@ -28,7 +27,7 @@ const ENDLESS: f64 = 1e4;
 
 /// Length of the drawn up vector, as a fraction of the distance from the eye to what it looks at.
 /// It is drawn longer or shorter than it is, so that it fits the drawing. Chosen by eye.
-const UP: f64 = 0.2;
+const UP: f64 = 0.12;
 
 /// The scene's camera, in an observer's picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,14 +121,16 @@ const CORNERS: [DVec2; 4] = [
 /// the view axis, they would cover the handles of the eye and the window.
 const LOWER: DVec2 = DVec2::new(0.0, -1.0);
 
-/// Names of the handles of the window and of its edge, and the place of the edge's handle.
-fn lens_handles(lens: Lens) -> [(&'static str, DVec2); 2] {
-    let (window, edge) = match lens {
-        Lens::Distance(_) => (CAMERA.d.name, (CAMERA.view_height.name, DVec2::Y)),
-        Lens::Fov(_) => (CAMERA.view_height.name, (CAMERA.fov.name, DVec2::Y)),
-        Lens::HorizontalFov(_) => (CAMERA.view_height.name, (CAMERA.hfov.name, DVec2::X)),
-    };
-    [(window, DVec2::ZERO), edge]
+/// Name of the handle in the middle of the window.
+const WINDOW: &str = CAMERA.d.name;
+
+/// Returns the name and the place of the handle at the window's edge.
+fn edge_handle(lens: Lens) -> (&'static str, DVec2) {
+    match lens {
+        Lens::Distance(_) => (CAMERA.view_height.name, DVec2::Y),
+        Lens::Fov(_) => (CAMERA.fov.name, DVec2::Y),
+        Lens::HorizontalFov(_) => (CAMERA.hfov.name, DVec2::X),
+    }
 }
 
 /// Returns the names of the camera's handles, with their positions in space.
@@ -141,8 +142,9 @@ pub fn camera_handles(camera: &Camera, image: &Image) -> Vec<(&'static str, DVec
         View::Direction(direction) => (CAMERA.direction.name, eye + direction),
     };
     let mut handles = vec![(CAMERA.eye.name, eye), view];
-    let lens = lens_handles(camera.lens).into_iter();
-    handles.extend(lens.map(|(name, across)| (name, frustum.at(across, frustum.d))));
+    for (name, across) in [(WINDOW, DVec2::ZERO), edge_handle(camera.lens)] {
+        handles.push((name, frustum.at(across, frustum.d)));
+    }
     handles.push((CAMERA.up.name, eye + unit(camera.up).0 * frustum.up));
     handles.push((CAMERA.near.name, frustum.at(LOWER, camera.near)));
     handles.extend(
@@ -185,11 +187,10 @@ pub fn camera_overlay(
     let angle = |degrees: f64| format!("{degrees:.1}°");
     let label = |name: &'static str| match (name, camera.lens) {
         ("d", _) => format!("window, d {}", short(d)),
-        ("view_height", Lens::Distance(_)) => {
+        ("view_height", _) => {
             let high = short(camera.view_height);
             format!("{name} {high}, angle {}", angle(facts.fov_deg))
         }
-        ("view_height", _) => format!("window, {name} {}", short(camera.view_height)),
         ("fov", _) => format!("{name} {}", angle(facts.fov_deg)),
         ("hfov", _) => format!("{name} {}", angle(facts.hfov_deg)),
         ("near", _) => format!("{name} {}", short(camera.near)),
@@ -273,20 +274,27 @@ pub fn moved_camera(
             moved.view = View::Direction(moved_point(at, to, along, seen)? - eye);
         }
         ("up", _) => moved.up = turned_vector(eye, camera.up, frustum.up, to, seen),
-        ("d", _) => {
+        ("d", lens) => {
             let depth = along_line(eye, own.ahead)?;
-            moved.lens = Lens::Distance(in_front(depth)?);
+            if depth <= 0.0 {
+                return Err("the window stays in front of the eye".to_owned());
+            }
+            let opened = |slope: f64| {
+                let half = trig::atan2(slope * frustum.d, depth);
+                Angle::from_degrees(2.0 * half.in_degrees())
+            };
+            moved.lens = match lens {
+                Lens::Distance(_) => Lens::Distance(depth),
+                Lens::Fov(_) => Lens::Fov(opened(slope.y)),
+                Lens::HorizontalFov(_) => Lens::HorizontalFov(opened(slope.x)),
+            };
         }
-        ("view_height", Lens::Distance(_)) => {
+        ("view_height", _) => {
             let half = along_line(frustum.at(DVec2::ZERO, frustum.d), own.top)?;
             if half <= 0.0 {
                 return Err("the upper edge of the window stays above its middle".to_owned());
             }
             moved.view_height = 2.0 * half;
-        }
-        ("view_height", _) => {
-            let depth = along_line(eye, own.ahead)?;
-            moved.view_height = 2.0 * in_front(depth)? * slope.y;
         }
         ("fov", _) => moved.lens = Lens::Fov(angle(own.top, own.right)?),
         ("hfov", _) => moved.lens = Lens::HorizontalFov(angle(own.right, own.top)?),
@@ -309,12 +317,4 @@ pub fn moved_camera(
     } else {
         Err(TOO_FAR.to_owned())
     }
-}
-
-/// Rejects a depth of the window that is not in front of the eye.
-fn in_front(depth: f64) -> Result<f64, String> {
-    let is_in_front = depth > 0.0;
-    is_in_front
-        .then_some(depth)
-        .ok_or_else(|| "the window stays in front of the eye".to_owned())
 }
