@@ -398,8 +398,8 @@ struct DragView<'a> {
     projection: Projection,
     drag: &'a Drag<'a>,
     /// Points in space by which two results of the drag are compared if the camera, in its own
-    /// picture, or a checkerboard is dragged. Two results agree if these points appear at nearly equal places of
-    /// the picture.
+    /// picture, or a checkerboard is dragged. Two results agree if these points appear at nearly
+    /// equal places of the picture.
     points: Vec<DVec3>,
 }
 

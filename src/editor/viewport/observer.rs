@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3};
 
 use super::{camera, handles::unit, outside::camera_handles};
 use crate::{
+    color::Color,
     math::{Angle, trig},
     projection::Projection,
     scene::{Camera, FieldOwner, Image, Lens, Scene, Shape, View},
@@ -90,11 +91,10 @@ impl Observer {
     /// Derives the observer's projection.
     pub fn projection(&self) -> Projection {
         let [width, height] = self.size;
-        let background = crate::color::Color::BLACK;
         let image = Image {
             width,
             height,
-            background,
+            background: Color::BLACK,
         };
         Projection::new(&self.camera(), &image)
     }
