@@ -376,8 +376,8 @@ fn radius(sphere: &Sphere, to: DVec2, projection: &Projection) -> Result<f64, St
 /// Returns the vector at the point `foot` whose tip, drawn at the distance `reach` from there,
 /// appears at the point `to` of the picture. It has the length of the current vector, `vector`. If
 /// the tips of two vectors appear there, returns the one on the same side of the view ray as the
-/// current one: towards the eye, or away from it. If none does, returns the vector whose tip appears
-/// nearest.
+/// current one: towards the eye, or away from it. If none does, returns the vector whose tip
+/// appears nearest.
 pub fn turned_vector(
     foot: DVec3,
     vector: DVec3,

@@ -2,8 +2,8 @@
 //!
 //! In: the scene's camera, and the projection of the observer. Out: lines and handles in the
 //! observer's picture; the camera after a handle was dragged. The window moves along the view axis
-//! and keeps its size: this changes `d`, or the angle of a camera that has `fov` or `hfov`. Its edge
-//! changes `view_height`, or opens that angle.
+//! and keeps its size: this changes `d`, or the angle of a camera that has `fov` or `hfov`. Its
+//! edge changes `view_height`, or opens that angle.
 
 use glam::{DVec2, DVec3};
 
