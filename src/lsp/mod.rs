@@ -8,7 +8,8 @@
 //!
 //! `picture_requests` and `frames` answer requests about the picture of a text. These requests are
 //! Pinhole's additions to the protocol; docs/protocol.md describes them. `scene_version` caches the
-//! scene and the tracer's data, from which they are answered.
+//! scene and the tracer's data, from which they are answered. `view` reads the second camera of
+//! requests whose picture is not that of the scene's own camera.
 
 mod convert;
 mod documents;
@@ -21,6 +22,7 @@ mod scene_version;
 mod server;
 pub mod stdio;
 mod text_requests;
+mod view;
 
 pub use params::{Answer, Refusal, optional, response};
 pub use server::Server;

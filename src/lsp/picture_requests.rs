@@ -10,17 +10,18 @@ use super::{
     frames::encoded,
     params::{Answer, Refusal, at, optional},
     scene_version::SceneVersion,
+    view::{observer, written_camera, written_view},
 };
 use crate::{
     editor::{
         self, Analysis,
         viewport::{
-            self, Along, Drag, Glass, ObjectOverlay, Overlays, SAMPLE_COUNTS, ShownObjects,
-            Vanishing,
+            self, Along, Drag, Glass, ObjectOverlay, Overlays, PointedRay, SAMPLE_COUNTS,
+            ShownObjects, Vanishing,
         },
     },
     numbers::{short, short_vector, significant},
-    scene::{Count, Object},
+    scene::{Count, Object, Scene},
 };
 
 /// Prefix of the method names of those requests that Pinhole adds to the protocol.
@@ -112,7 +113,8 @@ fn add(
 
 fn pick(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) -> Answer {
     let at = point(params, "point")?;
-    let (scene, world) = version.world(1);
+    let observer = observer(params, &version.scene)?;
+    let (scene, world) = version.world(observer.as_ref(), 1);
     let (hit, color) = viewport::pick(scene, world, at).unzip();
     let hit = hit.flatten();
     let image = &scene.image;
@@ -206,14 +208,17 @@ fn shown(params: &Value) -> Result<ShownObjects, Refusal> {
 }
 
 fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) -> Answer {
-    let mut overlays = viewport::overlays(&version.scene, &shown(params)?);
+    let observer = observer(params, &version.scene)?;
+    let seen = observer.map(|observer| observer.scene(&version.scene));
+    let seen = seen.as_ref().unwrap_or(&version.scene);
+    let mut overlays = viewport::overlays(seen, &shown(params)?);
     let objects = &version.scene.objects;
     let has_board = overlays
         .objects
         .iter()
         .any(|it| is_board(&objects[it.object]));
     if has_board {
-        let (scene, world) = version.world(1);
+        let (scene, world) = version.world(observer.as_ref(), 1);
         viewport::hide(&mut overlays, scene, world);
     }
     let Overlays {
@@ -239,7 +244,7 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion
         object["handles"] = handles.collect();
         object
     });
-    Ok(json!({
+    let mut answer = json!({
         "size": size,
         "axis": written_point(axis),
         "horizon": horizon.map(|line| written_line(&line)),
@@ -247,6 +252,28 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion
         "near": written_lines(&near),
         "far": written_lines(&far),
         "objects": objects.collect::<Vec<_>>(),
+    });
+    if let Some(observer) = observer {
+        let pointed = pointed_ray(params, version)?;
+        let Scene { camera, image, .. } = &version.scene;
+        let camera = viewport::camera_overlay(camera, image, &observer.projection(), pointed);
+        answer["view"] = written_view(&observer);
+        answer["camera"] = written_camera(&camera, written_point, |lines| written_lines(lines));
+    }
+    Ok(answer)
+}
+
+/// Returns the ray of the scene's camera through the parameter `point`, a point of its picture;
+/// `None` if there is no such parameter, or if the point is outside of the picture.
+fn pointed_ray(params: &Value, version: &mut SceneVersion) -> Result<Option<PointedRay>, Refusal> {
+    let Some(pixel) = optional::<[f64; 2]>(params, "point")?.map(DVec2::from) else {
+        return Ok(None);
+    };
+    let (scene, world) = version.world(None, 1);
+    let found = viewport::pick(scene, world, pixel);
+    Ok(found.map(|(hit, _)| PointedRay {
+        pixel,
+        end: hit.map(|hit| hit.point),
     }))
 }
 
@@ -280,9 +307,11 @@ fn drag(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) ->
     let handle: String = at(params, "/handle")?;
     let along: Option<String> = optional(params, "along")?;
     let to = point(params, "to")?;
+    let observer = observer(params, &version.scene)?;
+    // From outside, the camera has handles, as objects have.
     let from = match object {
-        Some(_) => to,
-        None => point(params, "from")?,
+        None if observer.is_none() => point(params, "from")?,
+        _ => to,
     };
     let along = along.map(|name| {
         let message = || format!("`along` is x, y, z or floor, and not `{name}`");
@@ -295,6 +324,7 @@ fn drag(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) ->
         to,
         along: along.transpose()?,
         step: optional(params, "step")?,
+        observer,
     };
     let sources = &converter.document.sources;
     let (scene, alone) = version.alone(sources, object);
@@ -306,7 +336,7 @@ fn drag(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) ->
 
 fn samples(params: &Value, version: &mut SceneVersion) -> Answer {
     let pixel = pixel(params, version)?;
-    let (scene, world) = version.world(1);
+    let (scene, world) = version.world(None, 1);
     let mut sampler = scene.sampler;
     if let Some(method) = optional::<String>(params, "method")? {
         let unknown = || Refusal::invalid(format!("`{method}` is no method"));
@@ -329,7 +359,7 @@ fn samples(params: &Value, version: &mut SceneVersion) -> Answer {
 /// Answers with what a pixel shows, its exact colour, and the errors of all methods there.
 fn glass(params: &Value, version: &mut SceneVersion) -> Answer {
     let pixel = pixel(params, version)?;
-    let (scene, world) = version.world(1);
+    let (scene, world) = version.world(None, 1);
     let Glass {
         seen,
         enlarged,

@@ -8,7 +8,8 @@
 //! `lines` projects lines into the picture. `handles` computes the handles of an object and moves
 //! the object, `camera` moves the camera, and `edits` writes the changed fields into the text.
 //! `drag` combines them. `add` writes new blocks. `pick` and `glass` look at one point and at one
-//! pixel.
+//! pixel. `observer` is a second camera, from which the scene is shown together with its own;
+//! `outside` draws that one there, and moves it.
 
 mod add;
 mod camera;
@@ -17,6 +18,8 @@ mod edits;
 mod glass;
 mod handles;
 mod lines;
+mod observer;
+mod outside;
 mod overlays;
 mod pick;
 
@@ -31,6 +34,8 @@ pub use drag::{Drag, Dragged, alone, drag};
 pub use glass::{Glass, MethodErrors, SAMPLE_COUNTS, SeenColor, glass};
 pub use handles::Along;
 pub use lines::clip;
+pub use observer::{Observer, USUAL_FOV, beside};
+pub use outside::{CameraHandle, CameraOverlay, PointedRay, camera_overlay};
 pub use overlays::{
     MOST_OBJECTS, ObjectOverlay, Overlays, ShownObjects, Vanishing, hide, overlays,
 };

@@ -1,6 +1,7 @@
 // The glass: one pixel enlarged, with its samples by a chosen method, its exact colour, and a chart
 // of its errors by all methods.
 
+import { showPart } from "./dock";
 import { byId, create, createSvg, fromBase64, newestOf, remember, remembered } from "./dom";
 import { editor } from "./editor";
 import { pointedAt } from "./hover";
@@ -62,7 +63,7 @@ class PixelGlass {
 
   show(pixel: Point | null): void {
     this.pixel = pixel;
-    this.section.hidden = pixel === null;
+    showPart(this.section, pixel !== null);
     overlays.pin(pixel);
     if (pixel === null && document.activeElement === document.body) picture.stage.focus();
     this.changed();

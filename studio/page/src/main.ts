@@ -16,6 +16,7 @@ import { hintField, openSwatch, refreshHints } from "./hints";
 import "./layout";
 import { numberControls } from "./numbers";
 import { listObjects, refreshOutlines } from "./outlines";
+import { outside } from "./outside";
 import { overlays } from "./overlays";
 import { picture } from "./picture";
 import { feedProjectors, isProjector } from "./projector";
@@ -58,6 +59,7 @@ frames.onState = state => {
 };
 frames.onRest = () => {
   rested();
+  outside.changed();
   if (waiting !== null) void hosted(waiting);
 };
 
@@ -72,6 +74,7 @@ function changed(): void {
   if (editor.uri === "") return;
   frames.changed();
   void refreshOutlines();
+  outside.changed();
   files.show();
   draftChanged();
   // Hints, sliders and objects are not updated during a drag.
@@ -93,7 +96,10 @@ function rested(): void {
   }, REST);
 }
 
-overlays.onNeed = selection.onChange = () => void refreshOutlines();
+overlays.onNeed = selection.onChange = () => {
+  void refreshOutlines();
+  void outside.refresh();
+};
 picture.onView = () => {
   overlays.draw();
   selection.draw();
@@ -151,6 +157,7 @@ byId("redo").addEventListener("click", () => redo(editor.view));
 // The editor creates elements only for visible lines, so printing needs a copy of the text.
 addEventListener("beforeprint", () => {
   picture.fit();
+  outside.picture.fit();
   setText(byId("print-text"), `${files.at.name}, ${new Date().toLocaleString()}\n\n${editor.text}`);
 });
 if (!isProjector) connection.open();

@@ -8,7 +8,7 @@ import { setText } from "./visible";
 /** Names of the optional layers. Their checkboxes in the menu have the same names. */
 export type Layer = "outlines" | "vanishing" | "horizon" | "axis" | "near";
 
-const boxes = [...document.querySelectorAll<HTMLInputElement>("#layers input")];
+const boxes = [...document.querySelectorAll<HTMLInputElement>("#layers [name]")];
 
 /** Distance of arrows from the border of the picture's area, in screen pixels; chosen by eye. */
 const EDGE = 14;
@@ -67,10 +67,7 @@ class OverlayLayer {
     if (data === null) return;
     const group = createSvg("g", { transform: picture.matrix });
     svg.append(group);
-    const path = (name: string, lines: readonly Polyline[]) => {
-      const d = lines.map(line => `M${line.join("L")}`).join("");
-      if (d !== "") group.append(...twice({ d }, name));
-    };
+    const path = (name: string, lines: readonly Polyline[]) => drawLines(group, name, lines);
     if (this.pinned !== null) {
       const [x, y] = this.pinned;
       path("pinned", [[[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1], [x, y]]]);
@@ -118,6 +115,12 @@ class OverlayLayer {
     const parallel = this.isOn("vanishing") ? data.vanishing.filter(it => it.point === null) : [];
     for (const { axis } of parallel) yield `Lines along ${axis} stay parallel in this picture.`;
   }
+}
+
+/** Draws lines of the class `name` into a group. */
+export function drawLines(group: SVGElement, name: string, lines: readonly Polyline[]): void {
+  const d = lines.map(line => `M${line.join("L")}`).join("");
+  if (d !== "") group.append(...twice({ d }, name));
 }
 
 /** Returns a light line over a dark one. One of them is visible on any background. */

@@ -136,7 +136,7 @@ test("among very many objects the menu shows the selected one at once, and place
     new MutationObserver(() => window.named.push(document.querySelector("#objects").selectedOptions[0]?.text)).observe(document.querySelector("#objects"), { childList: true });
   });
   await page.mouse.click(...(await onPage(page, [640, 364])));
-  await page.waitForSelector(".handle");
+  await page.waitForSelector("#handles .handle");
   const name = await page.evaluate(() => document.querySelector("#objects").selectedOptions[0]?.text);
   assert.match(name ?? "", /^Ball\[\d+, \d+\] \(sphere\)$/);
   assert.ok(Number(/\d+/.exec(name)[0]) >= 25, `${name} is none of the first thousand`);

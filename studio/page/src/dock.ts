@@ -1,0 +1,10 @@
+// The dock below the picture. It is hidden while all of its parts are.
+
+import { byId } from "./dom";
+
+/** Shows or hides a part of the dock. */
+export function showPart(part: HTMLElement, isShown: boolean): void {
+  part.hidden = !isShown;
+  const dock = byId("dock");
+  dock.hidden = ([...dock.children] as HTMLElement[]).every(it => it.hidden);
+}
