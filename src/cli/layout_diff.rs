@@ -147,7 +147,9 @@ mod tests {
                 "a\nb c\n",
                 "@@ -1,3 +1,2 @@\n a\n-b\n-c\n+b c\n",
             ),
-            // A line `}` corresponds only to the `}` with equally many characters before it.
+            // Equal lines correspond only if equally many characters precede them in the two texts,
+            // not counting white space. So the last `}` of the old text corresponds to the last one
+            // of the new text, not to an earlier `}`.
             (
                 "}\n}\n x\n}\n",
                 "}\n}\nx\n}\n",

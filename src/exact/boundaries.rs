@@ -314,7 +314,8 @@ impl Boundary {
                 }
             }
         }
-        // An equation and its negative describe the same curve, and adding 0 turns −0 into 0.
+        // An equation and its negative describe the same curve, so the sign is chosen such that the
+        // first coefficient that is not 0 is positive. Adding 0 turns −0 into 0, whose bits differ.
         let leading = factors.iter().find(|factor| **factor != 0.0);
         let sign = 1_f64.copysign(leading.copied().unwrap_or(1.0));
         factors.map(|factor| (factor * sign + 0.0).to_bits())

@@ -71,8 +71,8 @@ pub struct Canvas {
 /// A text beside a point.
 struct Label {
     class: &'static str,
-    /// Points, one of which the label names. Each point is given with the preferred direction from
-    /// the point to the label.
+    /// Points beside which the label may be placed, each with the preferred direction from the
+    /// point to the label. The label is placed beside the point where its cost is least.
     points: Vec<[DVec2; 2]>,
     text: String,
 }
@@ -243,7 +243,7 @@ impl Canvas {
         )
     }
 
-    /// Writes each label at the place near its point where the cost is least.
+    /// Writes each label at the place where its cost is least, near one of its points.
     fn place_labels(&mut self) {
         let mut taken: Vec<[DVec2; 2]> = Vec::new();
         for label in std::mem::take(&mut self.labels) {

@@ -88,9 +88,11 @@ fn by_centroid<T: Real>(
     let sum = |c: &Ball3<T>, o: &Ball3<T>, exponent: i32| -> Ball3<T> {
         array::from_fn(|i| c[i].scaled(far + exponent) + o[i].scaled(near + exponent))
     };
-    // Only the signs of the edges' forms matter, so that lengths may be scaled. With the corners a
-    // = c + o and b = c + p, a × b is computed as c × (p − o) + o × p. If a × b were computed from
-    // a and b themselves, it would lose most digits for a small triangle that is far away.
+    // For the edge from the corner a to the corner b, computes a × b, the normal of the plane
+    // through the eye and the edge. With a = c + o and b = c + p, where c is the centroid and o and
+    // p are the offsets of a and b from it, a × b = c × (p − o) + o × p. If a × b were computed
+    // from a and b themselves, it would lose most digits for a small triangle that is far away. The
+    // length of the normal does not matter, so it is scaled by a power of two to about 1 at most.
     let edge = |a: usize, b: usize| {
         let along: Ball3<T> = array::from_fn(|i| &offsets[b][i] - &offsets[a][i]);
         let turn = cross(&offsets[a], &offsets[b]);

@@ -17,9 +17,10 @@ use std::f64::consts::PI;
 use multiversion::multiversion;
 
 /// Maximum number of terms of the series ([`EdgeSeries`]) by which a checkerboard is integrated
-/// along an edge. The error bound includes the omitted terms. Squares nearer than 18 squares
-/// (`NEAR_SQUARES`) are integrated one by one, without the series. At greater distances, the bound
-/// of the omitted terms is proportional to 22!/2·(18π)⁻²⁰, about 5e-15.
+/// along an edge. The error bound includes the omitted terms. Squares up to a distance of 18 sides
+/// of a square (`NEAR_SQUARES`) from the line where the depth is 0 are integrated one by one,
+/// without the series. At greater distances, the bound of the omitted terms is proportional to
+/// 22!/2·(18π)⁻²⁰, about 5e-15.
 pub(super) const MAX_TERMS: usize = 20;
 /// Upper limit on the number of blocks into which the sum over an edge's crossings is divided. The
 /// truncation error of each block is limited to the tolerance divided by this number, so that the
@@ -230,9 +231,10 @@ impl LineCrossings {
     }
 }
 
-/// Computes the alternating sum Σ (−1)^j·X over the `count` crossings of an edge that follow its
-/// first `done` crossings, with j = 0 at the first of them. X is what the edge contributes at a
-/// crossing ([`EdgeSeries`]). At least `terms` terms of this series are used.
+/// Computes the alternating sum Σ (−1)^j·X over `count` consecutive crossings of an edge. At the
+/// first of them, j = 0; before it, the edge has `done` other crossings. X is the edge's
+/// contribution at a crossing, given by `series`. Its first `terms` terms are added up, or some
+/// more if there is no variant of this function for this number of terms.
 #[multiversion(targets(
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",

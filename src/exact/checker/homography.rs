@@ -16,16 +16,17 @@ use crate::math::{Double, Real, two_product};
 /// Unit roundoff of `f64`, 2^−53.
 pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
 
-/// Minimum absolute value of the determinant of the matrix of the board's three linear forms
-/// ([`Homography`]), each scaled so that its largest factor is 1 to 2. A smaller determinant is
-/// replaced by this value, so that the inverse and its products are finite. The matrix is then
-/// treated as singular, and the error bound covers the whole polygon.
+/// Absolute value of the determinant of the matrix of N_a, N_b and L ([`Homography`]) up to which
+/// the matrix is treated as singular. Each form is first scaled so that its largest coefficient is
+/// between 1 and 2. For a singular matrix, the computation continues with this value in place of
+/// the determinant, so that it stays finite, and the error bound covers the whole polygon.
 const MIN_DETERMINANT: f64 = 1e-100;
 
-/// Maximum displacement of squares by rounding errors, in pixels, up to which corners may be moved.
-/// [`Homography::corner`] moves a corner onto the horizon if their distance may be only a rounding
-/// error. If squares may be displaced further, no corner is moved, because the move would increase
-/// the error bound too much. At the maximum, it adds about a hundredth of the default tolerance.
+/// Displacement of squares by rounding errors, in pixels, up to which corners may be moved onto the
+/// horizon. [`Homography::corner`] moves a corner if its distance from the horizon may be only a
+/// rounding error. If squares may be displaced further, no corner is moved, because the move would
+/// increase the error bound too much. With this displacement, the move adds about a hundredth of
+/// the default tolerance to the bound.
 const MAX_HORIZON_DISPLACEMENT: f64 = 1e-11;
 
 /// An integral of a checkerboard's sign (1 on squares of one colour, −1 on the others), and a bound

@@ -63,8 +63,8 @@ pub enum Shows {
     InAreas,
     /// Only at edges, where colours meet.
     AtEdges,
-    /// A weak change both inside areas and at edges. The search at edges tries such a mistake only
-    /// if the areas of one colour, too, differ from the prediction.
+    /// Both inside areas of one colour and at edges, but weakly. The search for mistakes at edges
+    /// tries such a mistake only if areas of one colour, too, differ from the prediction.
     Everywhere,
 }
 

@@ -39,18 +39,19 @@ const SURE: f64 = 8.0;
 /// without noise. The correct value is 1. With a smaller margin, errors of the estimate would be
 /// reported; with a larger one, slight blurs would be overlooked.
 const WIDE: f64 = 1.4;
-/// Extra tolerance of the squared pixel width above [`WIDE`], in squared pixels, if each pixel has
-/// one sample. For n samples per pixel, it is divided by n. If all pixels use the same few sample
-/// positions, these may lie farther from the pixel's middle than its points do on average. A
-/// correct picture is then less sharp.
+/// Amount, in squared pixels, that is added to [`WIDE`] if each pixel has one sample. For n samples
+/// per pixel, it is divided by n. If all pixels use the same few sample positions, these may lie
+/// farther from the pixel's middle than its points do on average. A correct picture is then less
+/// sharp.
 const WIDER: f64 = 3.0;
-/// Tolerance of the squared pixel width below 1, the correct value, in squared pixels, in a picture
-/// without noise. With a larger tolerance, pixels that are slightly too narrow would be overlooked.
+/// Amount, in squared pixels, by which the squared width of a pixel may be below the correct value,
+/// 1, in a picture without noise. With a larger amount, pixels that are slightly too narrow would
+/// be overlooked.
 const NARROW: f64 = 0.25;
-/// Extra tolerance of the squared pixel width below 1, in addition to [`NARROW`], in squared
-/// pixels, if each pixel has one sample. For n samples per pixel, it is divided by n. If all pixels
-/// use the same few sample positions, these may lie closer to the pixel's middle than its points do
-/// on average. A correct picture is then sharper.
+/// Amount, in squared pixels, that is added to [`NARROW`] if each pixel has one sample. For n
+/// samples per pixel, it is divided by n. If all pixels use the same few sample positions, these
+/// may lie closer to the pixel's middle than its points do on average. A correct picture is then
+/// sharper.
 const NARROWER: f64 = 5.0;
 
 /// Greatest squared width of a pixel, in squared pixels, that counts as correct in a JPEG, whose

@@ -56,18 +56,18 @@ const JOINT_SETS: usize = 2;
 /// would be examined in vain.
 const PROMISING: f64 = 0.5;
 
-/// Maximum error of a hypothesis that is close to the picture, as a fraction of a correct program's
-/// squared error. Errors that sampling can explain are ignored. Only close hypotheses are fitted
-/// completely, because this takes long.
+/// Maximum ratio of two squared differences from the student's picture, that of a hypothesis to
+/// that of a correct program, at which the hypothesis counts as close. Differences that sampling
+/// can explain are ignored. Only close hypotheses are fitted completely, because this takes long.
 const NEAR_RATIO: f64 = 0.1;
 
-/// Maximum ratio of a hypothesis's error to the least error of all hypotheses so far. If the ratio
-/// is larger, the numbers of the hypothesis are not fitted further, because it is unlikely to
-/// become the best. Not even an added mistake at edges would reduce its error much.
+/// Maximum ratio of a hypothesis's squared difference from the student's picture to the least of
+/// all hypotheses so far. If the ratio is larger, the numbers of the hypothesis are not fitted
+/// further: it is unlikely to become the best, even with an added mistake at edges.
 const WORSE: f64 = 4.0;
-/// Error below which differences between hypotheses are ignored, as a fraction of a correct
-/// program's squared error. Without this limit, a hypothesis without any error would exclude all
-/// others from further fitting.
+/// Ratio of two squared differences from the student's picture, that of a hypothesis to that of a
+/// correct program, up to which the hypothesis is always fitted further. Without this limit, a
+/// hypothesis without any difference would exclude all others from further fitting.
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// Maximum number of objects that are suspected to be wrong. Those with the largest error in and
@@ -135,7 +135,7 @@ struct Search<'a> {
     /// Sets of mistakes with completely fitted numbers that do not explain the picture, even with a
     /// mistake at edges.
     completed: Vec<Vec<Mistake>>,
-    /// Least error that any hypothesis left so far, as a fraction of a correct program's error.
+    /// Least value of [`left`] for any hypothesis so far.
     least_left: f64,
     /// Hypothesis with the least cost so far, and its cost.
     nearest: Option<(f64, Candidate)>,
@@ -253,8 +253,8 @@ impl Search<'_> {
         let fitted = judge.fit_all(candidate, &judge.coarse, [2, 1]);
         let fitted = fitted.map_or_else(|| candidate.clone(), |(fitted, _)| fitted);
         let mut judged = judge.judged(&fitted, &judge.middle)?;
-        // A hypothesis whose error is large, or much larger than that of another hypothesis, is not
-        // fitted further.
+        // A hypothesis whose difference is large, or much larger than another one's, is not fitted
+        // further.
         let left = left(judge, judged.candidate()).unwrap_or(f64::INFINITY);
         self.least_left = self.least_left.min(left);
         let most = NEAR_RATIO.min(f64::max(WORSE * self.least_left, NEGLIGIBLE));
@@ -308,14 +308,14 @@ fn patched(judge: &Judge, from: &Judged) -> Option<Candidate> {
     explained_with(judge, &patched)
 }
 
-/// Returns whether a hypothesis is close to the picture: it leaves at most a tenth of a correct
-/// program's error (`NEAR_RATIO`), or has no mistakes.
+/// Returns whether a hypothesis is close to the student's picture: it has no mistakes, or its
+/// squared difference is at most a tenth (`NEAR_RATIO`) of a correct program's.
 fn is_near(judge: &Judge, candidate: &Candidate) -> bool {
     candidate.mistakes.is_empty() || left(judge, candidate).is_some_and(|left| left <= NEAR_RATIO)
 }
 
-/// Returns the squared error that a hypothesis leaves, as a fraction of a correct program's. Errors
-/// that sampling can explain are ignored. Returns `None` if the budget of work is used up.
+/// Returns a hypothesis's squared difference from the student's picture, divided by a correct
+/// program's. Ignores what sampling can explain. Returns `None` if the budget of work is used up.
 fn left(judge: &Judge, candidate: &Candidate) -> Option<f64> {
     let square = |candidate: &Candidate| {
         let predicted = judge.predicted(candidate, &judge.middle)?;

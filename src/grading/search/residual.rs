@@ -22,12 +22,12 @@ const CODED_EDGE_REACH: usize = 8;
 /// changes pixels slightly even far from an edge. Chosen by trial.
 const PIXELS_PER_INSIDE: usize = 10;
 
-/// Greatest displacement of all edges together that is ignored, in pixels. Rounded numbers in a
-/// scene may displace edges this far.
+/// Greatest displacement of all edges together that is ignored if each pixel has very many samples,
+/// in pixels. Rounded numbers in a scene may displace edges this far.
 const IGNORED: f64 = 0.06;
 
-/// Part of the ignored displacement of all edges that depends on the number of samples per pixel,
-/// in pixels. For n samples, this value is divided by n and added to [`IGNORED`]. Chosen by trial.
+/// Amount that is added to [`IGNORED`] if each pixel has one sample, in pixels. For n samples per
+/// pixel, it is divided by n. Chosen by trial.
 const IGNORED_WITH_ONE_SAMPLE: f64 = 0.06;
 
 /// Coefficients a, b and c of a limit in pixels. If the edges of a single object are displaced by
@@ -36,10 +36,10 @@ const IGNORED_WITH_ONE_SAMPLE: f64 = 0.06;
 /// displace an edge parallel to the grid by up to 0.5/√n.
 const IGNORED_OF_OBJECT: [f64; 3] = [0.12, 0.5, 0.7];
 
-/// Threshold of the displacement of all edges of a JPEG, in pixels to the right or down. A larger
-/// displacement is reported if it is also significant (see `SURELY_MOVED`). Coding hides most of a
-/// displacement, so the value is small. It is greater than 1/6, because the mean of three samples
-/// at the same places in all pixels may lie 1/6 pixel off the middle.
+/// Displacement of all edges of a JPEG, in pixels along a row or a column, above which it is
+/// reported if it is also significant (see `SURELY_MOVED`). Coding hides most of a displacement, so
+/// the value is small. It is greater than 1/6, because the mean of three samples at the same places
+/// in all pixels may lie 1/6 pixel off the middle.
 const MOVED: f64 = 0.2;
 /// Squared length of a displacement of a JPEG's edges, in squared standard deviations, above which
 /// it is significant enough to be reported. Chosen by trial.

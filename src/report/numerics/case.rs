@@ -1,5 +1,5 @@
-//! A hard case of the arithmetic: it generates scenes, and points of their pictures at which the
-//! renderer's answers are tested.
+//! A hard case of the arithmetic. It generates random inputs and tests Pinhole's answers: what is
+//! seen at points of scenes' pictures, or the axes of cameras.
 
 use super::{
     inputs::{CaseRng, SamplePoint},
@@ -10,7 +10,7 @@ use crate::{
     scene::{Camera, Scene, Shape},
 };
 
-/// A hard case: a kind of scene in which rounding errors easily cause wrong answers.
+/// A hard case: a kind of scene or camera for which rounding errors easily cause wrong answers.
 /// [`cases`](super::cases) returns all cases.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {

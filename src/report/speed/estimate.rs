@@ -1,12 +1,12 @@
-//! Estimates of the samples and the time that each method needs to reach an error, and a ranking of
-//! the methods by CPU time.
+//! Estimates of the samples and the time that each method needs to reduce its error to a given
+//! value, and a ranking of the methods by CPU time.
 
 use super::results::{
     EndSlope, LEAST_BEND, Measurement, MethodSeries, Run, SeriesPoint, bend, end_slope,
 };
 use crate::scene::Method;
 
-/// Estimate of what a method needs to reach an error.
+/// Estimate of what a method needs to reduce its error to a given value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// Samples per pixel; `None` for the exact method, which uses no samples.
@@ -17,8 +17,8 @@ pub struct Estimate {
     pub cpu_runs: [f64; 2],
     /// Estimated elapsed time, in seconds.
     pub wall: f64,
-    /// Whether no measured number of samples reaches the error, so that the estimate is
-    /// extrapolated.
+    /// Whether the error is still above the given value with the largest measured number of
+    /// samples, so that the estimate is extrapolated.
     pub is_extrapolated: bool,
 }
 
@@ -30,7 +30,8 @@ impl Estimate {
     }
 }
 
-/// The methods that reach an error, ranked by CPU time.
+/// The methods that can reduce their error to a given value, ranked by the CPU time that they need
+/// for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranking {
     /// The method with the least CPU time, and the methods whose CPU times do not clearly differ
@@ -41,10 +42,10 @@ pub struct Ranking {
 }
 
 impl Measurement {
-    /// Estimates the samples and the time that a method needs to reach an error. Returns `None` if
-    /// more samples do not reduce the method's error. Also returns `None` if `error` is at most the
-    /// root mean square error bound of the exact picture, since such small errors cannot be
-    /// measured.
+    /// Estimates the samples and the time that a method needs to reduce its error to `error`.
+    /// Returns `None` if more samples do not reduce the method's error. Also returns `None` if
+    /// `error` is at most the root mean square error bound of the exact picture, since such small
+    /// errors cannot be measured.
     pub fn estimate(&self, series: &MethodSeries, error: f64) -> Option<Estimate> {
         self.tells(error).then(|| series.estimate(error)).flatten()
     }
@@ -67,8 +68,8 @@ impl Measurement {
         error > self.reference.root_mean_square_bound()
     }
 
-    /// Ranks the methods that reach an error by CPU time. Methods with extrapolated estimates come
-    /// last, since such estimates are uncertain.
+    /// Ranks the methods that can reduce their error to `error`, by the CPU time that they need for
+    /// it. Methods with extrapolated estimates come last, since such estimates are uncertain.
     pub fn ranking(&self, error: f64) -> Ranking {
         let estimate = |it: &MethodSeries| Some((it.method, self.estimate(it, error)?));
         let sampled = self.series.iter().filter_map(estimate);
@@ -95,9 +96,9 @@ impl Measurement {
 type Measured = (f64, Run);
 
 impl MethodSeries {
-    /// Estimates the samples and the time that the method needs to reach an error. Returns the
-    /// smallest measured number of samples if it suffices. Returns `None` if more samples do not
-    /// reduce the error.
+    /// Estimates the samples and the time that the method needs to reduce its error to `error`.
+    /// Returns the smallest measured number of samples if it suffices. Returns `None` if more
+    /// samples do not reduce the error.
     ///
     /// The error is assumed to be proportional to a power of the number of samples, which is a
     /// straight line on logarithmic axes. Between two measured numbers of samples, the line goes

@@ -56,15 +56,16 @@ impl Mixture {
 /// made by [`World::by_surface`], a surface.
 #[derive(Default)]
 struct Mixed {
-    /// Whether each pixel shows several entries, row by row.
+    /// For each pixel, row by row: whether it shows several entries of the palette, i.e. several
+    /// colours or surfaces.
     pixels: Vec<bool>,
     /// Work that was spent, in units of about 50 ns.
     work: u64,
 }
 
 impl Mixed {
-    /// Finds the pixels in a world's picture. When the work exceeds `limit`, the remaining pixels
-    /// are treated as having one entry.
+    /// Finds the pixels of a world's picture that show several entries of the palette. When the
+    /// work exceeds `limit`, the remaining pixels are treated as showing one entry.
     fn among(world: &World, limit: u64) -> Self {
         let whole = world.picture();
         let integrator = Integrator::for_values(world, |_| []).with_work_limit(limit);

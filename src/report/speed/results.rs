@@ -30,8 +30,8 @@ pub struct Request {
     /// Number of runs of each method with each number of samples. If `None`, there are as many runs
     /// as there is time for.
     pub runs: Option<u64>,
-    /// Errors, in linear light. For each error, the report estimates how many samples and how much
-    /// time a method needs to reach it.
+    /// Values to which methods should reduce their errors, in linear light. For each value, the
+    /// report estimates how many samples and how much time each method needs.
     pub errors: Vec<f64>,
     /// Time that the measurement may take. It has no effect if both `samples` and `runs` are given.
     pub budget: Duration,
@@ -50,7 +50,8 @@ pub struct Measurement {
     pub seed: u64,
     /// Measured numbers of samples per pixel, in ascending order.
     pub rungs: Vec<u64>,
-    /// Requested errors, in linear light.
+    /// Values to which methods should reduce their errors, in linear light. For each value, the
+    /// report estimates how many samples and how much time each method needs.
     pub errors: Vec<f64>,
     /// The exact picture, which is computed without samples. All renders are compared with it.
     pub reference: Exact,

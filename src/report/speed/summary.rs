@@ -35,14 +35,16 @@ pub fn heading(measured: &Measurement) -> String {
     )
 }
 
-/// Returns a sentence for each requested error that recommends a method.
+/// Returns a sentence for each error in `measured.errors`. It recommends a method for reducing the
+/// error to this value.
 pub fn verdicts(measured: &Measurement) -> Vec<String> {
     let verdict = |&error: &f64| verdict(measured, error);
     measured.errors.iter().map(verdict).collect()
 }
 
-/// Returns a sentence that recommends a method to reach `error`, with the reason and other methods
-/// for comparison. Methods are compared by CPU time or, if that is below 10 ms, by samples.
+/// Returns a sentence that recommends a method for reducing the error to `error`, with the reason
+/// and other methods for comparison. Methods are compared by CPU time or, if that is below 10 ms,
+/// by samples.
 pub fn verdict(measured: &Measurement, error: f64) -> String {
     let Ranking { fastest, others } = measured.ranking(error);
     let wanted = asked_error(error);

@@ -130,7 +130,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Reads a list, whatever separates its values. Returns `None` if the list nests too deep, or
-    /// if its end is missing and its values are uncertain.
+    /// if it lacks its closing bracket and it is unclear where the bracket belongs.
     fn list(
         &mut self,
         close: &'static str,
@@ -235,8 +235,9 @@ impl<'s> Recovery<'_, 's> {
             && self.is_field_name(next)
     }
 
-    /// Reports a list that lacks its closing bracket. Returns the list if its number of values is
-    /// allowed and all of its values are certain; otherwise `None`.
+    /// Reports a list that lacks its closing bracket. Returns the list if it is clear where the
+    /// bracket belongs: the number of values is allowed, no comma is missing or needless, and the
+    /// last value is not a sum or a product. Otherwise returns `None`.
     fn unclosed_list(
         &mut self,
         mut list: List<'s>,

@@ -20,7 +20,8 @@ class Tools {
   /** Modifier keys during a drag. With Shift, the object moves in any direction, not only along the
    * chosen axis or plane. With Control, it moves without steps. */
   held = { shiftKey: false, ctrlKey: false };
-  /** Axis or plane that the user chose for drags (`""` is none); undefined before any choice. */
+  /** Axis or plane to which the user restricted drags; `""` means no restriction. Undefined before
+   * the user has chosen. */
   private chosen: Along | "" | undefined;
   private hasFloor = false;
 
@@ -35,15 +36,16 @@ class Tools {
       (this.chosen = input.value as Along | ""));
   }
 
-  /** Offers a choice of axes and planes if an object is selected. If `hasFloor` is set and the user
-   * has not chosen any, `floor` is chosen. */
+  /** Offers the axes and planes to which drags can be restricted if an object is selected. Until
+   * the user chooses, `floor` is chosen if `hasFloor` is set, and otherwise no restriction. */
   offer(isSelected: boolean, hasFloor: boolean): void {
     this.hasFloor = hasFloor;
     byId("along").hidden = !isSelected;
     for (const input of radios("along")) input.checked = input.value === this.kept;
   }
 
-  /** Axis or plane of drags without the Shift key; `""` is none. */
+  /** Axis or plane to which drags are restricted while Shift is not held: the user's choice or, if
+   * there is none, the floor if the scene has a checkerboard. `""` means no restriction. */
   private get kept(): Along | "" { return this.chosen ?? (this.hasFloor ? "floor" : ""); }
 
   /** Axis or plane along which a drag moves an object, or a handle of the camera. The floor is a
