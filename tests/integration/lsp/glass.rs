@@ -61,7 +61,12 @@ fn the_glass_agrees_with_the_exact_picture_and_with_probe() {
         let found = client.ask("pinhole/glass", json!({ "pixel": pixel }));
         assert_eq!(numbers(&found["mean"]), exact.film.row(y)[x as usize]);
         let bound = found["bound"].as_f64().expect("a bound");
-        assert_eq!(bound as f32, exact.bounds[(y * 48 + x) as usize]);
+        // The bounds of a picture are rounded up to 32 bits.
+        let stored = f64::from(exact.bounds[(y * 48 + x) as usize]);
+        assert!(
+            bound <= stored && stored <= bound * 1.000_001,
+            "{bound}, {stored}"
+        );
 
         let seen = found["seen"].as_array().expect("a list");
         let shares: Vec<f64> = seen
@@ -147,7 +152,12 @@ fn errors_of_the_own_seed_are_those_of_the_picture() {
     // In a pixel of one colour, every sample is right.
     for errors in answers[4]["errors"].as_array().expect("a list") {
         if errors["method"] != "scatter" {
-            assert_eq!(numbers(&errors["typical"]), [0.0; 5]);
+            // A mean of equal numbers may be rounded.
+            assert!(
+                numbers(&errors["typical"])
+                    .iter()
+                    .all(|error| *error <= 1e-15)
+            );
         }
     }
 }
