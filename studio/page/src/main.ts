@@ -13,6 +13,7 @@ import { frames } from "./frames";
 import { hoverAgain } from "./hover";
 import { hintField, openSwatch, refreshHints } from "./hints";
 import "./layout";
+import { followAddress, lessonChanged, startLessons } from "./lessons";
 import { numberControls } from "./numbers";
 import { listObjects, refreshOutlines } from "./outlines";
 import { overlays } from "./overlays";
@@ -73,6 +74,7 @@ function changed(): void {
   void refreshOutlines();
   files.show();
   draftChanged();
+  lessonChanged();
   // Hints, sliders and objects are not updated during a drag.
   if (frames.dragging === null) rested();
   status.changed();
@@ -132,6 +134,7 @@ async function hosted(file: HostedFile): Promise<void> {
   files.hosted(file);
   if (!first) return;
   changed();
+  startLessons(file.lesson, !file.saved);
   void offerDrafts(file.drafts);
 }
 
@@ -142,6 +145,8 @@ addEventListener("hashchange", async () => {
     connection.retry();
   }
   await openLink();
+  overlays.showAddressed();
+  if (files.isTold) followAddress();
 });
 byId("undo").addEventListener("click", () => undo(editor.view));
 byId("redo").addEventListener("click", () => redo(editor.view));
