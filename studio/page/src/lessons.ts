@@ -169,8 +169,9 @@ function showConditions(): void {
     block.replaceChildren(...(judged?.checks[before + i] ?? []).map(it => {
       const item = create("li", it.holds ? "holds" : "");
       const found = it.start === null ? it.found : `${it.found}, at the start ${it.start}`;
-      item.append(create("span", "mark", it.holds ? "✓" : "○"),
-        create("span", "", it.words || it.condition), create("span", "found", `now ${found}`));
+      item.append(create("span", "condition-mark", it.holds ? "✓" : "○"),
+        create("span", "", it.words || it.condition));
+      if (!/^(true|false)$/.test(it.found)) item.append(create("span", "found", `now ${found}`));
       item.firstElementChild?.setAttribute("aria-label", it.holds ? "holds:" : "does not hold:");
       item.firstElementChild?.setAttribute("role", "img");
       item.title = it.condition;
@@ -179,7 +180,9 @@ function showConditions(): void {
   });
   const all = judged?.checks.flat() ?? [];
   const held = all.filter(it => it.holds).length;
-  setText(state, judged?.holds ? "Solved. ✓" : judged && `${held} of ${all.length} hold` || "");
+  const isAsked = body.querySelector(".conditions") !== null;
+  setText(state, judged?.holds ? "Solved. ✓"
+    : judged !== null && isAsked ? `${held} of ${all.length} hold` : "");
 }
 
 /** Returns the number of the lesson after the current one. The host's lesson has none. */
