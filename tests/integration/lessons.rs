@@ -33,6 +33,7 @@ fn examples() -> Vec<Example> {
     let read = |name: &str, ending| fs::read_to_string(folder.join(format!("{name}.{ending}")));
     let files = names(&folder);
     let lessons = files.iter().filter_map(|file| file.strip_suffix(".md"));
+    let lessons = lessons.filter(|name| *name != "README");
     let lessons = lessons.map(|name| Example {
         name: name.to_owned(),
         text: read(name, "md").unwrap(),

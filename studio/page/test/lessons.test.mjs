@@ -9,7 +9,7 @@ import { test } from "node:test";
 import { andFinished, drag, FIGURE, finished, host, launch, link, menu, open, serve, site, text, type } from "./helpers.mjs";
 
 const folder = new URL("../../../examples/lessons/", import.meta.url);
-const names = readdirSync(folder).filter(file => file.endsWith(".md")).sort().map(file => file.replace(".md", ""));
+const names = readdirSync(folder).filter(file => /^\d.*\.md$/.test(file)).sort().map(file => file.replace(".md", ""));
 const read = (name, ending) => readFileSync(new URL(`${name}.${ending}`, folder), "utf8");
 
 const state = page => page.textContent("#lesson-state");
