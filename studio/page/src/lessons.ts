@@ -155,9 +155,8 @@ function list(): HTMLElement {
 
 /** Opens a lesson by the page's address, so that Back leads to what was there before. */
 function choose(i: number): void {
-  const address = `#${KEY}=${i}`;
-  if (location.hash === address) followAddress();
-  else location.hash = address;
+  history.pushState(null, "", `#${KEY}=${i}`);
+  followAddress();
   title.focus();
 }
 
@@ -213,7 +212,7 @@ byId("lesson-list").addEventListener("click", () => {
 byId("lesson-close").addEventListener("click", () => {
   close();
   byId("lessons").focus();
-  if (inAddress(KEY) !== null) location.hash = "";
+  if (inAddress(KEY) !== null) history.pushState(null, "", location.pathname + location.search);
 });
 byId("lessons").addEventListener("click", () => {
   if (!panel.hidden) return byId("lesson-close").click();
