@@ -39,7 +39,7 @@
 //! | `exr` | OpenEXR files in linear light: `Picture::save`, `film::write_exr` |
 //! | `read` | pictures of any program: `Picture::open`, `Scene::grade`; includes `png` and `exr` |
 //! | `fancy` | [`Mistakes`] displayed with excerpts, as in a terminal: `diagnostic::Report` |
-//! | `json` | problems as lines of JSON: `diagnostic::json_lines` |
+//! | `json` | problems as lines of JSON: `diagnostic::json_lines`; `lesson` |
 //! | `report` | reports on accuracy and on speed: `report` |
 //! | `lsp` | the answers that editors ask for, and the language server: `editor`, `lsp`, `refine` |
 //! | `preview` | notification when a scene's file is changed, and `refine` |
@@ -84,9 +84,9 @@
 //! - [`cancel`]: a flag ends any of these computations early.
 //! - [`film`] converts means to bytes, and encodes and decodes files.
 //! - [`mod@format`] writes a text in the canonical layout.
-//! - [`inspect`], [`seen`] and [`probe`] answer questions about a scene, [`grading`] finds the
-//!   mistakes in a picture of a scene, and `report` measures how accurate and how fast Pinhole
-//!   itself is.
+//! - [`inspect`], [`seen`] and [`probe`] answer questions about a scene, `lesson` judges whether a
+//!   scene solves a lesson, [`grading`] finds the mistakes in a picture of a scene, and `report`
+//!   measures how accurate and how fast Pinhole itself is.
 //! - [`editor`] answers questions while a scene is written: completions, explanations of words,
 //!   uses of names. `lsp` serves these answers to editors by the Language Server Protocol.
 //! - [`figure`] draws figures of a scene for teaching material, as SVG.
@@ -148,6 +148,8 @@ pub mod format;
 #[cfg(feature = "read")]
 pub mod grading;
 pub mod inspect;
+#[cfg(feature = "json")]
+pub mod lesson;
 pub mod probe;
 #[cfg(feature = "report")]
 pub mod report;

@@ -171,6 +171,19 @@ Examples:
 A figure is drawn for a width of 12 cm, is light or dark as the page is, and describes itself to screen readers. The same \
 scene gives the same bytes on every machine.";
 
+pub const LESSON_EXAMPLES: &str = "\
+Examples:
+  pinhole lesson check examples/lessons/2-d-and-the-angle.md mine.scn
+  pinhole lesson check lesson.md mine.scn --format json
+
+A lesson is Markdown. Its conditions stand in fenced blocks `check`, one a line; all of them must hold.
+
+JSON: lesson, scene, holds, conditions [{line, condition, words (the comment behind it), found (the value, or null if there is \
+none), start (that of the lesson's own scene, if the condition names it), holds}].
+
+Exit status: 0 all conditions hold; 1 one does not, or the scene has errors; 2 the lesson or its own scene has errors, or other \
+trouble.";
+
 pub const EXPLAIN_EXAMPLES: &str = "\
 Examples:
   pinhole explain bare_angle
@@ -203,8 +216,10 @@ Examples:
   pinhole studio figure.scn                      opens a browser
   pinhole studio                                 a new scene; Save asks for a name in the current folder
   pinhole studio figure.scn --no-open --port 8000
+  pinhole studio --lesson lesson.md              a lesson, with its scene lesson.scn
+  pinhole studio mine.scn --lesson lesson.md     a lesson, with the scene of a student
 
-Serves this machine alone, and a browser that was given the printed address; no file but the scene is read or written. \
+Serves this machine alone, and a browser that was given the printed address; no file but the scene and the lesson is read, and none but the scene written. \
 Ctrl-C ends it, with status 130.";
 
 pub const COMPLETIONS_EXAMPLES: &str = "\

@@ -20,6 +20,7 @@ mod inspect;
 mod interrupt;
 mod judge;
 mod layout_diff;
+mod lesson;
 #[cfg(feature = "lsp")]
 mod lsp;
 mod manual;
@@ -94,6 +95,7 @@ fn command(command: Command, interrupt: &Interrupt) -> Result<Status, Trouble> {
         Command::Merge(args) => merge::run(&args, interrupt),
         Command::Sheet(args) => sheet::run(&args, interrupt),
         Command::Figure(args) => figure::run(&args, interrupt),
+        Command::Lesson { command } => lesson::run(&command),
         Command::Explain(args) => explain::run(&args),
         Command::Fmt(args) => fmt::run(&args, interrupt),
         #[cfg(feature = "lsp")]
@@ -152,8 +154,9 @@ fn each(
 enum Status {
     /// The command is done, with or without warnings.
     Done = 0,
-    /// The command ran, but with a negative result: the scene has errors, the pictures differ, the
-    /// layout would change, or an editor disconnected without sending `exit`.
+    /// The command ran, but with a negative result: the scene has errors or does not solve a
+    /// lesson, the pictures differ, the layout would change, or an editor disconnected without
+    /// sending `exit`.
     SceneErrors = 1,
     /// Wrong arguments, a file that cannot be read or written, or too little memory.
     Trouble = 2,

@@ -13,9 +13,9 @@ use super::{
     args::StudioArgs,
     input::{self, is_standard, shown},
     interrupt::Interrupt,
-    output, trouble, watch,
+    lesson, output, trouble, watch,
 };
-use crate::studio::{Host, SceneFile};
+use crate::studio::{Host, LessonFile, SceneFile};
 
 /// Serves the page until Ctrl-C is pressed.
 pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
@@ -24,7 +24,12 @@ pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         .scene
         .as_deref()
         .map_or("a new scene".to_owned(), shown);
-    let host = Host::new(args.port.unwrap_or(0), file).map_err(|error| {
+    if let Some(path) = &args.lesson {
+        lesson::read(path)?;
+    }
+    let lesson = args.lesson.as_deref();
+    let lesson = lesson.map(|path| LessonFile::new(path, input::bytes));
+    let host = Host::new(args.port.unwrap_or(0), file, lesson).map_err(|error| {
         let port = args
             .port
             .map_or(String::new(), |port| format!(" at port {port}"));

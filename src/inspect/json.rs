@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::{AXES, Inspection, ObjectFacts};
 use crate::{
@@ -43,10 +43,29 @@ impl Inspection {
         writeln!(out, "}}")
     }
 
+    /// Returns the JSON object, without the objects after the first [`LISTED`].
+    #[doc(hidden)]
+    pub fn to_json(&self) -> Value {
+        let facts = self.facts().into_iter();
+        let mut facts: Map<_, _> = facts.map(|(key, value)| (key.to_owned(), value)).collect();
+        let objects = self.objects.iter().enumerate().take(LISTED);
+        let objects = objects.map(|(index, object)| self.object(index, object));
+        facts.insert("objects".to_owned(), objects.collect());
+        facts.insert("seen_exactly".to_owned(), self.is_exact.into());
+        facts.into()
+    }
+
     /// Returns the members of the JSON object, except the list of the scene's objects.
     fn facts(&self) -> [(&'static str, Value); 4] {
         let camera = &self.camera;
-        let point = |(axis, pixel)| json!({ "axis": axis, "pixel": pixel });
+        let is_inside = |point: [f64; 2]| {
+            let sides = self.size.map(f64::from);
+            (0..2).all(|i| (0.0..=sides[i]).contains(&point[i]))
+        };
+        let point = |(axis, pixel): (&&str, &Option<[f64; 2]>)| {
+            let inside = pixel.is_some_and(is_inside);
+            json!({ "axis": axis, "pixel": pixel, "inside": inside })
+        };
         let points = AXES.iter().zip(&self.vanishing_points).map(point);
         let image = json!({ "width": self.size[0], "height": self.size[1] });
         let camera = json!({

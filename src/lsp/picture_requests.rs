@@ -13,6 +13,7 @@ use super::{
     view::{observer, written_camera, written_view},
 };
 use crate::{
+    diagnostic::Diagnostic,
     editor::{
         self, Analysis,
         viewport::{
@@ -20,8 +21,10 @@ use crate::{
             ShownObjects, Vanishing,
         },
     },
+    lesson::{self, Facts, Judged, value_text},
     numbers::{short, short_vector, significant},
-    scene::{Count, Object, Scene},
+    scene::{self, Count, Object, Scene},
+    source::{Source, Sources},
 };
 
 /// Prefix of the method names of those requests that Pinhole adds to the protocol.
@@ -53,6 +56,7 @@ pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
         "drag" => drag(params, converter, version),
         "samples" => samples(params, version),
         "glass" => glass(params, version),
+        "lesson" => lesson(params, converter, version),
         _ => Err(Refusal::unknown(&format!("{NAMESPACE}{about}"))),
     }
 }
@@ -397,6 +401,39 @@ fn pixel(params: &Value, version: &SceneVersion) -> Result<[u32; 2], Refusal> {
         return Err(Refusal::invalid("`pixel` is no pixel of the picture"));
     }
     Ok(pixel)
+}
+
+/// Judges the scene by the conditions of a lesson. The client sends the text of the lesson and that
+/// of its start scene.
+fn lesson(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
+    let [text, start]: [Source; 2] = [
+        Source::from_text("lesson", at::<String>(params, "/lesson")?),
+        Source::from_text("start.scn", at::<String>(params, "/start")?),
+    ];
+    let lesson = lesson::parse(&text).map_err(|problems| {
+        let place = |it: &Diagnostic| it.labels.first().map_or(0, |it| text.line(it.span.start));
+        let first = problems.first().map(|it| (place(it), &*it.message));
+        let (line, message) = first.unwrap_or_default();
+        Refusal::invalid(format!("line {line} of the lesson: {message}"))
+    })?;
+    let sources = Sources::new(start);
+    let start = scene::read(&sources).scene;
+    let start = start.ok_or_else(|| Refusal::invalid("the scene of the lesson has errors"))?;
+    let scene = Facts::new(&version.scene, &converter.document.sources.file);
+    let judged = lesson.judge(&scene, &Facts::new(&start, &sources.file));
+    let written = |it: &Judged<'_>| {
+        json!({
+            "condition": it.condition.text,
+            "words": it.condition.words,
+            "found": value_text(it.found.as_ref()),
+            "start": it.at_start.as_ref().map(|value| value_text(Some(value))),
+            "holds": it.holds,
+        })
+    };
+    let blocks = judged.iter();
+    let blocks: Vec<Value> = blocks.map(|it| it.iter().map(written).collect()).collect();
+    let holds = judged.iter().flatten().all(|it| it.holds);
+    Ok(json!({ "holds": holds, "checks": blocks }))
 }
 
 fn point(params: &Value, name: &str) -> Result<DVec2, Refusal> {

@@ -23,6 +23,7 @@ use super::{
     access::{NotAdmitted, Pass},
     download,
     draft::Unsaved,
+    lesson_file::LessonFile,
     scene_file::{NotSaved, SceneFile},
     threaded_download::{self, Watch},
 };
@@ -67,6 +68,7 @@ pub fn converse(
     pass: &Pass,
     ending: &watch::Receiver<bool>,
     file: &Mutex<SceneFile>,
+    lesson: Option<&LessonFile>,
 ) {
     let mut conversation = Conversation {
         runtime,
@@ -75,6 +77,7 @@ pub fn converse(
         ending,
         server: Server::new(|_| {}),
         file,
+        lesson,
         known: 0,
         download: None,
     };
@@ -99,6 +102,7 @@ struct Conversation<'a> {
     server: Server,
     /// The file of the scene, which all pages share.
     file: &'a Mutex<SceneFile>,
+    lesson: Option<&'a LessonFile>,
     /// Version number of the file's content that the page has received; 0 if it has received none.
     known: u64,
     download: Option<Download>,
@@ -239,6 +243,9 @@ impl Conversation<'_> {
             params["drafts"] = json!(drafts);
         }
         drop(file);
+        if let Some(lesson) = self.lesson.filter(|_| is_first) {
+            params["lesson"] = lesson.for_page();
+        }
         self.notify("studio/file", params)
     }
 

@@ -30,6 +30,7 @@ use super::{
     access::{self, Access, Pass},
     connection_limits::{Door, Visitor},
     conversation::{self, converse},
+    lesson_file::LessonFile,
     scene_file::SceneFile,
 };
 
@@ -58,6 +59,7 @@ pub struct Host {
 struct Shared {
     access: Access,
     file: Mutex<SceneFile>,
+    lesson: Option<LessonFile>,
     /// Whether the host is about to end. Each connection holds a receiver of this value until it is
     /// closed, so that the host can wait until no receiver is left.
     ending: watch::Sender<bool>,
@@ -70,7 +72,7 @@ impl Host {
     /// # Errors
     ///
     /// Returns an error if the port is taken, or if the system's random number generator fails.
-    pub fn new(port: u16, file: SceneFile) -> io::Result<Self> {
+    pub fn new(port: u16, file: SceneFile, lesson: Option<LessonFile>) -> io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         listener.set_nonblocking(true)?;
         Ok(Self {
@@ -79,6 +81,7 @@ impl Host {
             shared: Arc::new(Shared {
                 access: Access::new()?,
                 file: Mutex::new(file),
+                lesson,
                 ending: watch::Sender::new(false),
             }),
         })
@@ -226,5 +229,8 @@ fn begin(shared: Arc<Shared>, pass: Pass, socket: WebSocket) {
     let ending = shared.ending.subscribe();
     let thread = thread::Builder::new().name("connection".to_owned());
     // A panic of the thread ends only its own connection, so the result is ignored.
-    let _ = thread.spawn(move || converse(runtime, socket, &pass, &ending, &shared.file));
+    let _ = thread.spawn(move || {
+        let (file, lesson) = (&shared.file, shared.lesson.as_ref());
+        converse(runtime, socket, &pass, &ending, file, lesson);
+    });
 }

@@ -8,7 +8,7 @@
 //! There are two hosts. The host in this module (`host`) serves the page over a WebSocket, on this
 //! machine only. `access` decides which pages are admitted, `connection_limits` limits connections
 //! without a token, and `conversation` serves one page. `scene_file` reads and saves the scene's
-//! file, which all pages share, `threaded_download` renders a picture to a file on several threads,
+//! file, which all pages share, `lesson_file` a lesson, `threaded_download` renders a picture to a file on several threads,
 //! and `draft` stores texts that are not saved. The other host is the crate `studio/engine`, which
 //! runs in the browser itself.
 
@@ -24,9 +24,11 @@ mod draft;
 #[cfg(not(target_family = "wasm"))]
 mod host;
 #[cfg(not(target_family = "wasm"))]
+mod lesson_file;
+#[cfg(not(target_family = "wasm"))]
 mod scene_file;
 #[cfg(not(target_family = "wasm"))]
 mod threaded_download;
 
 #[cfg(not(target_family = "wasm"))]
-pub use self::{host::Host, scene_file::SceneFile};
+pub use self::{host::Host, lesson_file::LessonFile, scene_file::SceneFile};

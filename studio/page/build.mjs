@@ -14,6 +14,12 @@ mkdirSync(folder, { recursive: true });
 /** Scenes of the menu: the gallery's, in its order, and an empty one to build from. */
 const gallery = readFileSync("../../examples/README.md", "utf8");
 const examples = [...gallery.matchAll(/^\|.*\]\((\w+)\.scn\)/gm)].map(([, name]) => [name, readFileSync(`../../examples/${name}.scn`, "utf8")]);
+const folderOfLessons = "../../examples/lessons";
+const lessons = readdirSync(folderOfLessons).filter(file => /^\d.*\.md$/.test(file)).sort().map(file => {
+  const name = file.replace(/\.md$/, "");
+  const read = ending => readFileSync(path.join(folderOfLessons, `${name}.${ending}`), "utf8");
+  return { name, text: read("md"), start: read("scn") };
+});
 const EMPTY = `image { width 1280  height 720  background black }
 
 camera { eye (3, 3.5, 8)  lookat (0.2, 0.8, 0)  d 2.75 }
@@ -31,7 +37,7 @@ const { metafile } = await build({
   target: ["chrome111", "firefox113", "safari16.4"],
   minify: true,
   legalComments: "none",
-  define: { EXAMPLES: JSON.stringify(examples), EMPTY: JSON.stringify(EMPTY) },
+  define: { EXAMPLES: JSON.stringify(examples), LESSONS: JSON.stringify(lessons), EMPTY: JSON.stringify(EMPTY) },
   metafile: true,
   logLevel: "warning",
   outdir: folder,

@@ -33,6 +33,7 @@ mod interrupt;
 mod language;
 mod laws;
 mod layers;
+mod lessons;
 mod library;
 mod lsp;
 mod numerics;

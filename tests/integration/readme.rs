@@ -50,10 +50,13 @@ fn run(command: &str, folder: &Folder) -> String {
 /// Returns a folder with the example files that a fresh clone of the repository contains.
 fn fresh_folder() -> Folder {
     let folder = Folder::with([]);
-    for name in names(&root().join("examples")) {
-        if name.ends_with(".scn") || name == "figure_9_9.png" {
-            let path = format!("examples/{name}");
-            folder.write(&path, fs::read(root().join(&path)).unwrap());
+    for part in ["examples", "examples/lessons"] {
+        for name in names(&root().join(part)) {
+            let is_text = name.ends_with(".scn") || name.ends_with(".md");
+            if is_text || name == "figure_9_9.png" {
+                let path = format!("{part}/{name}");
+                folder.write(&path, fs::read(root().join(&path)).unwrap());
+            }
         }
     }
     folder

@@ -68,6 +68,13 @@ pub enum Command {
     /// Draw a figure of a scene for a page of a course, as SVG
     #[command(after_help = help::FIGURE_EXAMPLES)]
     Figure(FigureArgs),
+    /// Tell whether a scene solves a lesson
+    #[command(after_help = help::LESSON_EXAMPLES)]
+    Lesson {
+        /// What to do.
+        #[command(subcommand)]
+        command: LessonCommand,
+    },
     /// Explain a kind of mistake, or a word of the language
     #[command(after_help = help::EXPLAIN_EXAMPLES)]
     Explain(ExplainArgs),
@@ -229,14 +236,39 @@ pub struct WatchArgs {
 #[cfg(feature = "studio")]
 #[derive(Debug, clap::Args)]
 pub struct StudioArgs {
-    /// The scene: a .scn file [default: a new scene]
+    /// The scene: a .scn file [default: a new scene, or that of the lesson]
     pub scene: Option<PathBuf>,
+    /// Show a lesson beside the text: a Markdown file, beside its scene, which has the same name
+    /// with the ending .scn
+    #[arg(long, value_name = "FILE")]
+    pub lesson: Option<PathBuf>,
     /// Print the address only; open no browser
     #[arg(long)]
     pub no_open: bool,
     /// The port to serve at [default: one that is free]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value_parser!(u16).range(1..))]
     pub port: Option<u16>,
+}
+
+/// The commands of `lesson`.
+#[derive(Debug, Subcommand)]
+pub enum LessonCommand {
+    /// Print each condition of a lesson, and whether it holds for a scene
+    #[command(after_help = help::LESSON_EXAMPLES)]
+    Check(LessonArgs),
+}
+
+/// Arguments of `lesson check`.
+#[derive(Debug, clap::Args)]
+pub struct LessonArgs {
+    /// The lesson: a Markdown file, beside its scene, which has the same name with the ending .scn
+    pub lesson: PathBuf,
+    /// The scene to judge: a .scn file, a PNG that Pinhole wrote, or `-` for standard input
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    #[command(flatten)]
+    pub format: FormatArgs,
 }
 
 /// Arguments of `inspect`.

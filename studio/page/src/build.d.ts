@@ -13,5 +13,7 @@ declare module "pinhole-engine" {
 
 /** Names and texts of the example scenes. The build inserts them into the page. */
 declare const EXAMPLES: [string, string][];
+/** The lessons, in their order. The build inserts them into the page. */
+declare const LESSONS: { name: string; text: string; start: string }[];
 /** Text of a new scene. */
 declare const EMPTY: string;

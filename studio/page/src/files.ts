@@ -86,9 +86,12 @@ class Files {
     byId("new").addEventListener("click", () => this.begin(EMPTY));
     for (const [name, text] of EXAMPLES) byId("examples").append(
       createButton(name.replace(/(\d)_(\d)/, "$1.$2").replaceAll("_", " "), "",
-        () => this.begin(text, new Scene(`${name}.scn`))));
+        () => this.start(`${name}.scn`, text)));
     addEventListener("beforeunload", event => { if (this.isUnsaved) event.preventDefault(); });
   }
+
+  /** Shows a new scene with this name and text. Undo restores the old scene. */
+  start(name: string, text: string): void { this.begin(text, new Scene(name)); }
 
   /** Replaces the shown scene by the scene `to` with this text. Undo restores the old scene. */
   private begin(text: string, to = new Scene()): void {

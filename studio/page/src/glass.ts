@@ -1,6 +1,7 @@
 // The glass: one pixel enlarged, with its samples by a chosen method, its exact colour, and a chart
 // of its errors by all methods.
 
+import { inAddress } from "./address";
 import { showPart } from "./dock";
 import { byId, create, createSvg, fromBase64, newestOf, remember, remembered } from "./dom";
 import { editor } from "./editor";
@@ -39,10 +40,10 @@ class PixelGlass {
     this.count.value = "16";
     for (const choice of [this.method, this.count])
       choice.addEventListener("change", () => this.changed());
+    const isOld = (layer: string) => layer === "samples" || layer === "grid";
     const layers = (remembered("layers") ?? "").split(" ");
-    const kept = layers.filter(it => it !== "samples" && it !== "grid");
-    this.isWanted = kept.length < layers.length;
-    if (this.isWanted) remember("layers", kept.join(" "));
+    this.isWanted = layers.some(isOld) || (inAddress("show") ?? "").split(",").some(isOld);
+    if (this.isWanted) remember("layers", layers.filter(it => !isOld(it)).join(" "));
     byId("glass-pin").addEventListener("click", () => this.pin());
     byId("glass-hide").addEventListener("click", () => this.show(null));
     byId("glass-next").addEventListener("click", () => step(this.method, 1));

@@ -14,6 +14,7 @@ import { glass } from "./glass";
 import { hoverAgain } from "./hover";
 import { hintField, openSwatch, refreshHints } from "./hints";
 import "./layout";
+import { followAddress, lessonChanged, startLessons } from "./lessons";
 import { numberControls } from "./numbers";
 import { listObjects, refreshOutlines } from "./outlines";
 import { outside } from "./outside";
@@ -77,6 +78,7 @@ function changed(): void {
   outside.changed();
   files.show();
   draftChanged();
+  lessonChanged();
   // Hints, sliders and objects are not updated during a drag.
   if (frames.dragging === null) rested();
   status.changed();
@@ -141,6 +143,7 @@ async function hosted(file: HostedFile): Promise<void> {
   files.hosted(file);
   if (!first) return;
   changed();
+  startLessons(file.lesson, !file.saved);
   void offerDrafts(file.drafts);
 }
 
@@ -151,6 +154,8 @@ addEventListener("hashchange", async () => {
     connection.retry();
   }
   await openLink();
+  overlays.showAddressed();
+  if (files.isTold) followAddress();
 });
 byId("undo").addEventListener("click", () => undo(editor.view));
 byId("redo").addEventListener("click", () => redo(editor.view));

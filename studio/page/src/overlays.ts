@@ -1,5 +1,6 @@
 // Drawings over the picture: optional layers, and outlines of the selected and the hovered object.
 
+import { inAddress } from "./address";
 import { byId, createSvg, remember, remembered } from "./dom";
 import { picture } from "./picture";
 import type { Overlays, Point, Polyline } from "./protocol";
@@ -28,7 +29,7 @@ class OverlayLayer {
   private pinned: Point | null = null;
 
   constructor(private readonly svg: SVGElement) {
-    const layers = remembered("layers")?.split(" ") ?? [];
+    const layers = inAddress("show")?.split(",") ?? remembered("layers")?.split(" ") ?? [];
     for (const box of boxes) {
       box.checked = layers.includes(box.name);
       box.addEventListener("change", () => {
@@ -38,6 +39,19 @@ class OverlayLayer {
       });
     }
   }
+
+  /** Shows the layers that the page's new address names, if it names any. They are not
+   * remembered. */
+  showAddressed(): void {
+    const layers = inAddress("show")?.split(",");
+    if (layers === undefined) return;
+    for (const box of boxes) box.checked = layers.includes(box.name);
+    this.draw();
+    this.onNeed();
+  }
+
+  /** Names of the layers that are shown, separated by commas. */
+  get shownLayers(): string { return boxes.filter(it => it.checked).map(it => it.name).join(); }
 
   isOn(layer: Layer): boolean { return boxes.some(it => it.name === layer && it.checked); }
 

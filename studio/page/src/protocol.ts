@@ -87,6 +87,16 @@ export interface Glass {
   errors: { method: string; typical: number[]; own: number[] }[];
 }
 
+/** A lesson: its name, its Markdown, and the text of its scene. */
+export interface LessonText { name: string; text: string; start: string }
+/** Whether a scene solves a lesson, with the conditions of each block `check`. `found` is the value
+ * in the scene; `start` that in the lesson's own scene, if the condition compares with it. */
+export interface Judged {
+  holds: boolean;
+  checks: { condition: string; words: string; found: string; start: string | null;
+    holds: boolean }[][];
+}
+
 /** The host's file. `text` is null if the file does not exist or cannot be read. */
 export interface HostedFile {
   name: string;
@@ -96,6 +106,8 @@ export interface HostedFile {
   saved: boolean;
   /** Unsaved drafts, the newest first. They are sent only to a page that has just connected. */
   drafts?: Draft[];
+  /** The lesson with which the host was started. */
+  lesson?: LessonText | null;
 }
 
 /** Unsaved text of the page with the key `id`. `base` is the content of the file when editing

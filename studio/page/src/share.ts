@@ -6,6 +6,7 @@ import { connection } from "./connection";
 import { editor } from "./editor";
 import { files } from "./files";
 import { outside } from "./outside";
+import { overlays } from "./overlays";
 import { say } from "./status";
 import { setText } from "./visible";
 
@@ -94,7 +95,9 @@ byId("copy").addEventListener("click", () => {
 byId("share").addEventListener("click", async () => {
   if (editor.text.length > LONGEST) return say(
     "The scene is too long for a link: give away its file.", "warning");
-  field.value = addressWith(KEY, await packed(editor.text)) + outside.inLink;
+  const { shownLayers } = overlays;
+  field.value = addressWith(KEY, await packed(editor.text))
+    + (shownLayers === "" ? "" : `&show=${shownLayers}`) + outside.inLink;
   dialog.showModal();
   field.select();
 });

@@ -47,6 +47,14 @@ for (const colorScheme of ["dark", "light"]) {
         await audit(page, "with the list of keys");
         await page.click("#keys-dialog >> text=Close");
       }
+      await page.click("#lessons");
+      await tab(page, "text");
+      await audit(page, "with the list of lessons");
+      await page.click("#lesson-body li:nth-child(2) button");
+      for (let i = 0; i < 3; i++) await page.click("#lesson-next");
+      await page.waitForSelector(".conditions .holds");
+      await audit(page, "with a lesson");
+      await page.click("#lesson-close");
       await type(page, FIGURE.replace("radius 1", "radios 1"));
       await tab(page, "picture");
       await page.waitForSelector("#stale:not([hidden])");

@@ -54,9 +54,9 @@ export async function host(context, text = FIGURE, name = "scene.scn") {
 }
 
 /** Starts a host of `file`, or of a new scene in `folder`, at the port `port` or any free one. */
-export async function serve(file, { port, folder, browser } = {}) {
+export async function serve(file, { port, folder, browser, lesson } = {}) {
   const scene = file === null ? [] : [file];
-  const options = [...(browser === undefined ? ["--no-open"] : []), ...(port === undefined ? [] : ["--port", port])];
+  const options = [...(browser === undefined ? ["--no-open"] : []), ...(port === undefined ? [] : ["--port", port]), ...(lesson === undefined ? [] : ["--lesson", lesson])];
   // The program that opens a browser is found on the path.
   const env = { ...process.env, XDG_STATE_HOME: STATE, PATH: browser === undefined ? process.env.PATH : `${browser}:${process.env.PATH}` };
   const child = spawn(PINHOLE, ["studio", ...scene, ...options], { cwd: folder, env, stdio: ["ignore", "ignore", "pipe"] });

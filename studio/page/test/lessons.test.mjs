@@ -1,0 +1,285 @@
+// Tests of lessons: their list and steps, conditions that are judged while the scene changes, links,
+// and a lesson of a teacher.
+
+import assert from "node:assert/strict";
+import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import path from "node:path";
+import { test } from "node:test";
+import { andFinished, drag, FIGURE, finished, host, launch, link, menu, open, serve, site, text, type } from "./helpers.mjs";
+
+const folder = new URL("../../../examples/lessons/", import.meta.url);
+const names = readdirSync(folder).filter(file => /^\d.*\.md$/.test(file)).sort().map(file => file.replace(".md", ""));
+const read = (name, ending) => readFileSync(new URL(`${name}.${ending}`, folder), "utf8");
+
+const state = page => page.textContent("#lesson-state");
+
+async function until(page, words) {
+  await page.waitForFunction(words => document.querySelector("#lesson-state").textContent.includes(words), words, { timeout: 15_000 });
+}
+
+/** Opens a lesson by the list, with the mouse. */
+async function choose(page, number) {
+  if (await page.isHidden("#lesson")) await page.click("#lessons");
+  else await page.click("#lesson-list");
+  await andFinished(page, () => page.click(`#lesson-body li:nth-child(${number}) button`));
+}
+
+/** Returns the conditions of the step: whether each holds, and its words. */
+async function conditions(page) {
+  return page.locator(".conditions li").evaluateAll(all => all.map(it => [it.classList.contains("holds"), it.children[1].textContent]));
+}
+
+/** Goes on to the last step. */
+async function last(page) {
+  while ((await page.textContent("#lesson-next")) === "Next ▸") await page.click("#lesson-next");
+}
+
+test("a lesson is opened, done with the mouse, and left, and no text is lost", async t => {
+  const page = await open(await launch(t), await host(t));
+  const mine = FIGURE.replace("radius 1", "radius 1.5");
+  await andFinished(page, () => type(page, mine));
+  await choose(page, 1);
+  assert.equal(await text(page), read(names[0], "scn"));
+  assert.equal(await page.textContent("#file-name"), `${names[0]}.scn`);
+  assert.match(await page.textContent("#lesson-title"), /^1\. The view plane$/);
+  // The text that was not saved is offered.
+  await page.waitForSelector("#draft-bar:not([hidden])");
+  await page.click("#draft-later");
+  assert.equal(await state(page), "");
+  await last(page);
+  await until(page, "0 of 3 hold");
+  assert.equal(await page.locator(".condition-mark[aria-label='does not hold:']").count(), 3);
+  // From the front to the back, as a student would do it.
+  for (const [from, held] of [[[265, 292], "1 of 3"], [[513, 253], "2 of 3"], [[316, 155], "Solved."]]) {
+    await andFinished(page, () => drag(page, from, [400, 225]));
+    await until(page, held);
+  }
+  assert.ok((await conditions(page)).every(([holds]) => holds));
+  await page.click("#lesson-list");
+  assert.match(await page.textContent("#lesson-body li:first-child"), /✓/);
+  // Coming back changes nothing, and Start again restores the start.
+  const solved = await text(page);
+  await page.click("#lesson-body li:first-child button");
+  assert.equal(await text(page), solved);
+  await andFinished(page, () => page.click("#lesson-again"));
+  assert.equal(await text(page), read(names[0], "scn"));
+  await until(page, "0 of 3 hold");
+  await page.click("#lesson-close");
+  assert.ok(await page.isHidden("#lesson"));
+  assert.equal(new URL(page.url()).hash, "");
+  await page.click(".cm-content");
+  for (let i = 0; i < 9 && (await text(page)) !== mine; i++) await page.keyboard.press("Control+z");
+  assert.equal(await text(page), mine);
+  assert.deepEqual(page.complaints, []);
+});
+
+test("every lesson is solved by its solution, and by nothing less", async t => {
+  const page = await open(await launch(t), await host(t));
+  for (const [i, name] of names.entries()) {
+    await choose(page, i + 1);
+    assert.equal(await text(page), read(name, "scn"), name);
+    await last(page);
+    await page.waitForFunction(() => / of \d hold/.test(document.querySelector("#lesson-state").textContent));
+    const before = await conditions(page);
+    assert.ok(before.length > 0 && before.some(([holds]) => !holds), name);
+    // In every condition, words say what it asks for.
+    for (const [, words] of before) assert.ok(!/[a-z]\/[a-z]/.test(words), words);
+    await andFinished(page, () => type(page, read(name, "solution.scn")));
+    await until(page, "Solved.");
+    assert.ok((await conditions(page)).every(([holds]) => holds), name);
+  }
+  assert.deepEqual(page.complaints, []);
+});
+
+test("a lesson is done by keyboard alone", async t => {
+  const page = await open(await launch(t), await host(t));
+  const focused = () => page.evaluate(() => document.activeElement.id || document.activeElement.textContent);
+  const tabTo = async (id, key = "Tab") => {
+    for (let i = 0; i < 60 && (await focused()) !== id; i++) await page.keyboard.press(key);
+    assert.equal(await focused(), id);
+  };
+  await page.focus("#undo");
+  await tabTo("lessons");
+  await page.keyboard.press("Enter");
+  assert.equal(await focused(), "lesson-title");
+  await tabTo("8. Singular cases");
+  await andFinished(page, () => page.keyboard.press("Enter"));
+  assert.equal(await focused(), "lesson-title");
+  await tabTo("lesson-next");
+  for (let i = 0; i < 3; i++) await page.keyboard.press("Enter");
+  await page.waitForSelector(".conditions li");
+  await tabTo("lesson-back");
+  await page.keyboard.press("Enter");
+  assert.equal(await page.locator(".conditions").count(), 0);
+  await tabTo("lesson-close");
+  await page.keyboard.press("Enter");
+  assert.equal(await focused(), "lessons");
+  assert.ok(await page.isHidden("#lesson"));
+});
+
+test("a link opens a lesson, also after a reload, and Back leaves it", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  await andFinished(page, () => page.goto(`${new URL(started.address).origin}/#lesson=4`));
+  assert.equal(await text(page), read(names[3], "scn"));
+  await page.reload();
+  await finished(page);
+  await page.waitForSelector("#lesson:not([hidden])");
+  assert.equal(await text(page), read(names[3], "scn"));
+  await andFinished(page, () => page.goto(`${new URL(started.address).origin}/#lesson=5`));
+  assert.equal(await text(page), read(names[4], "scn"));
+  await andFinished(page, () => page.goBack());
+  assert.match(await page.textContent("#lesson-title"), /^4\./);
+  await page.goto(`${new URL(started.address).origin}/#lesson=99`);
+  await page.waitForFunction(() => /no lesson 99/.test(document.querySelector("#said").textContent));
+});
+
+test("a link opens a scene with layers on, also after a reload, and Share makes it", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  const scene = read(names[3], "scn");
+  await andFinished(page, () => type(page, scene));
+  await menu(page, "Show", "#layers >> text=Vanishing points");
+  await page.click("#layers >> text=Horizon");
+  const address = await link(page);
+  assert.match(address, /#scene=[\w-]+&show=vanishing,horizon$/);
+  const other = await page.context().browser().newContext();
+  const shown = await other.newPage();
+  const { hash } = new URL(started.address);
+  await shown.goto(`${address}&${hash.slice(1)}`);
+  for (let i = 0; i < 2; i++) {
+    await finished(shown);
+    assert.equal(await text(shown), scene);
+    await shown.waitForSelector("#lines .horizon", { state: "attached" });
+    await shown.waitForSelector("#lines .axis-z", { state: "attached" });
+    assert.deepEqual(await shown.locator("#layers input:checked").evaluateAll(all => all.map(it => it.name)), ["vanishing", "horizon"]);
+    await shown.reload();
+  }
+  // Another address in the open page changes the layers.
+  await shown.goto(`${address.split("&")[0]}&show=axis`);
+  await shown.waitForSelector("#lines .view-axis", { state: "attached" });
+  assert.equal(await shown.locator("#lines .horizon").count(), 0);
+});
+
+const LESSON = `# <b>Mine</b>
+
+One <img src=x onerror="window.broken = 1"> [link](https://example.com) and \`code\`.
+
+## Task
+
+Make the ball larger.
+
+\`\`\`check
+inspect/objects/Ball/radius > start  // Ball is larger
+\`\`\`
+
+Then make it yellow.
+
+\`\`\`check
+inspect/objects/Ball/color = "#ffff00"
+\`\`\`
+`;
+
+test("a teacher's lesson runs, with its own scene or a student's, and shows no foreign HTML", async t => {
+  const folder = mkdtempSync(path.join(tmpdir(), "pinhole-lesson-"));
+  const [lesson, mine] = [path.join(folder, "mine.md"), path.join(folder, "student.scn")];
+  writeFileSync(lesson, LESSON);
+  writeFileSync(path.join(folder, "mine.scn"), FIGURE);
+  writeFileSync(mine, FIGURE.replace("radius 1", "radius 1.5"));
+  const browser = await launch(t);
+  const hosts = [await serve(null, { folder, lesson }), await serve(mine, { lesson })];
+  t.after(() => {
+    for (const started of hosts) started.stop();
+    rmSync(folder, { recursive: true, force: true });
+  });
+  const page = await open(browser, hosts[0]);
+  await page.waitForSelector("#lesson:not([hidden])");
+  assert.equal(await text(page), FIGURE);
+  assert.equal(await page.textContent("#file-name"), "mine.scn");
+  assert.equal(await page.textContent("#lesson-title"), "<b>Mine</b>");
+  assert.equal(await page.locator("#lesson-body :is(img, a, b)").count(), 0);
+  assert.match(await page.textContent("#lesson-body"), /<img .* link and code\./);
+  await page.click("#lesson-next");
+  await until(page, "0 of 2 hold");
+  assert.deepEqual(await page.locator(".conditions li").evaluateAll(all => all.map(it => it.textContent)), ["○Ball is largernow 1, at the start 1", '○inspect/objects/Ball/color = "#ffff00"now #808000']);
+  await andFinished(page, () => type(page, FIGURE.replace("radius 1", "radius 2")));
+  await until(page, "1 of 2 hold");
+  // While the text has errors, the marks stay.
+  await type(page, "camera {}");
+  await page.waitForTimeout(500);
+  assert.equal(await state(page), "1 of 2 hold");
+  await andFinished(page, () => type(page, FIGURE.replace("radius 1", "radius 2").replace("olive", "yellow")));
+  await until(page, "Solved.");
+  assert.equal(await page.evaluate(() => window.broken), undefined);
+  // A lesson that was changed is shown after a reload.
+  writeFileSync(lesson, LESSON.replace("<b>Mine</b>", "Changed").replace("> start", "< oops"));
+  page.on("dialog", dialog => dialog.accept());
+  await page.reload();
+  await finished(page);
+  await until(page, "line 10 of the lesson: `oops` is no value for `<`");
+  assert.equal(await page.textContent("#lesson-title"), "Changed");
+  writeFileSync(lesson, LESSON);
+  const other = await open(browser, hosts[1]);
+  await other.click("#lesson-next");
+  await until(other, "1 of 2 hold");
+  assert.equal(await text(other), FIGURE.replace("radius 1", "radius 1.5"));
+  await other.click("#lessons");
+  await other.click("#lessons");
+  assert.match(await other.textContent("#lesson-body li:first-child"), /Mine/);
+  await andFinished(other, () => other.click("#lesson-body li:nth-child(2) button"));
+  assert.equal(await text(other), read(names[0], "scn"));
+  assert.deepEqual([page.complaints, other.complaints], [[], []]);
+});
+
+for (const [width, height] of [[400, 800], [400, 640], [1280, 720]]) {
+  test(`a lesson is legible at ${width} × ${height}`, async t => {
+    const page = await open(await launch(t), await host(t), { viewport: { width, height } });
+    await page.click("#lessons");
+    if (height < 700) await page.click("#tabs [data-tab=text]");
+    for (const [i] of names.entries()) {
+      if (await page.isHidden("#lesson-body li button")) await page.click("#lesson-list");
+      await page.click(`#lesson-body li:nth-child(${i + 1}) button`);
+      for (;;) {
+        const found = await page.evaluate(() => {
+          const panel = document.querySelector("#lesson").getBoundingClientRect();
+          const body = document.querySelector("#lesson-body");
+          const buttons = [...document.querySelectorAll("#lesson button")].map(it => it.getBoundingClientRect());
+          return {
+            wide: document.documentElement.scrollWidth - innerWidth,
+            inside: buttons.every(it => it.right <= innerWidth && it.bottom <= panel.bottom + 1 && it.height >= 24),
+            across: body.scrollWidth - body.clientWidth,
+            lines: body.clientHeight / parseFloat(getComputedStyle(body).lineHeight),
+            size: parseFloat(getComputedStyle(body).fontSize),
+          };
+        });
+        assert.deepEqual([found.wide, found.inside, found.across], [0, true, 0], JSON.stringify(found));
+        // At least three lines are seen without scrolling, and the others by scrolling.
+        assert.ok(found.lines >= 3 && found.size >= 14, JSON.stringify(found));
+        if ((await page.textContent("#lesson-next")) !== "Next ▸") break;
+        await page.click("#lesson-next");
+      }
+    }
+    // The text is still there.
+    assert.ok((await page.locator(".cm-editor").boundingBox()).height > 20);
+  });
+}
+
+const skip = process.env.SITE === undefined ? "SITE names no folder" : false;
+
+test("the static page has the lessons, and its engine judges them", { skip }, async t => {
+  const { address } = await site(t, process.env.SITE);
+  const page = await open(await launch(t), { address: `${address}#lesson=2` });
+  await last(page);
+  await until(page, "2 of 3 hold");
+  assert.equal(await text(page), read(names[1], "scn"));
+  await andFinished(page, () => type(page, read(names[1], "solution.scn")));
+  await until(page, "Solved.");
+  // The error needs an exact picture.
+  await choose(page, 7);
+  await last(page);
+  await until(page, "2 of 4 hold");
+  await andFinished(page, () => type(page, read(names[6], "solution.scn")));
+  await until(page, "Solved.");
+  assert.deepEqual(page.complaints, []);
+});
