@@ -105,7 +105,7 @@ test("the last good picture of a text with errors is finished", async t => {
   await comparing(page);
   const expected = await decoded(page, rendered(started.folder, scene));
   // After the coarse picture has arrived, the text gets an error.
-  await page.evaluate(() => addEventListener("pinhole-frame", () => (window.isBegun = true), { once: true }));
+  await page.evaluate(() => addEventListener("pinhole-frame", ({ target }) => (window.isBegun ||= target.id === "canvas")));
   await page.click(".cm-content", { position: { x: 2, y: 5 } });
   await page.keyboard.press("Control+a");
   await page.keyboard.insertText(scene);
