@@ -9,6 +9,7 @@ use super::{
 };
 use crate::{
     area::Area,
+    editor::viewport::beside,
     inspect::inspect_camera,
     probe::{Probe, probe},
     projection::Projection,
@@ -78,11 +79,8 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     let arrow = 0.13 * (max - min).length();
     points.extend([-view.ahead, view.right, view.top].map(|axis| view.eye + axis * arrow));
 
-    // The direction from the scene to the observer of the figure is to the right of the camera,
-    // behind it and above it. The ray then runs to the right in the figure.
-    let level = (view.ahead + view.top * 0.2).with_y(0.0);
-    let level = level.normalize_or(DVec3::NEG_Z);
-    let side = level.cross(DVec3::Y) * 0.72 - level * 0.55 + DVec3::Y * 0.42;
+    // Seen from there, the ray runs to the right in the figure.
+    let side = beside(&view);
     let panel = [
         DVec2::new(50.0, 34.0),
         DVec2::new(WIDTH - 50.0, HEIGHT - 34.0),

@@ -11,9 +11,11 @@ use super::{
     params::{Refusal, optional},
     protocol::Uri,
     scene_version::SceneVersion,
+    view::observer,
 };
 use crate::{
     area::Area,
+    editor::viewport::Observer,
     film,
     render::{SLICE, Slices, pixel_work},
     sampling::Sampling,
@@ -24,7 +26,7 @@ use crate::{
 /// frame is refused. Usual screens show fewer than these 16 million pixels.
 const MOST_PIXELS: u64 = 1 << 24;
 
-/// Queue of the requested frames that are not finished yet, the oldest first.
+/// Queue of the requested frames that are not finished yet, in the order of their rendering.
 #[derive(Debug, Default)]
 pub struct Frames(Vec<Frame>);
 
@@ -34,17 +36,25 @@ struct Frame {
     uri: Uri,
     /// Version of the text that the frame shows.
     version: i32,
+    /// Whose picture the frame is; `None` for the picture of the scene's own camera.
+    observer: Option<Observer>,
     /// Factor by which the picture's width and height are divided.
     scale: u32,
     /// Number of samples per pixel; `None` to use the scene's own sampler.
     samples: Option<u64>,
+    /// Work of rendering one pixel, in samples.
+    work: u64,
     slices: Slices<[u8; 3]>,
 }
 
 impl Frames {
     /// Adds the frame that a request asks for. If the queue contains an equal frame, the new
     /// request replaces the earlier request for it. Otherwise, frames of other versions of the text
-    /// are dropped. Returns the identifiers of the requests that are replaced or dropped.
+    /// are dropped, and so are those of another observer, if the new one is of an observer. Returns
+    /// the identifiers of the requests that are replaced or dropped.
+    ///
+    /// An observer's frame comes before those that take more samples a pixel. Being small, it does
+    /// not delay them much, but they would delay it by a long time.
     pub fn push(
         &mut self,
         id: RequestId,
@@ -53,14 +63,20 @@ impl Frames {
         version: &SceneVersion,
     ) -> Result<Vec<RequestId>, Refusal> {
         let new = Frame::new(id, uri, params, version)?;
-        let what = |frame: &Frame| (frame.version, frame.scale, frame.samples);
+        let what = |frame: &Frame| (frame.version, frame.observer, frame.scale, frame.samples);
         let mut of_text = self.0.iter_mut().filter(|frame| frame.uri == new.uri);
         // An equal frame that is being rendered already is continued for the new request.
         if let Some(known) = of_text.find(|frame| what(frame) == what(&new)) {
             return Ok(vec![mem::replace(&mut known.id, new.id)]);
         }
-        let superseded = self.remove(|frame| frame.uri == new.uri && frame.version != new.version);
-        self.0.push(new);
+        let is_superseded = |frame: &Frame| {
+            let is_moved = frame.observer.is_some() && new.observer.is_some();
+            frame.version != new.version || (is_moved && frame.observer != new.observer)
+        };
+        let superseded = self.remove(|frame| frame.uri == new.uri && is_superseded(frame));
+        let takes_longer = |frame: &Frame| new.observer.is_some() && frame.work > new.work;
+        let place = self.0.iter().position(takes_longer);
+        self.0.insert(place.unwrap_or(self.0.len()), new);
         Ok(superseded)
     }
 
@@ -85,12 +101,12 @@ impl Frames {
         removed.map(|frame| frame.id).collect()
     }
 
-    /// Returns the identifier of the request for the oldest frame.
-    pub fn oldest(&self) -> Option<RequestId> {
+    /// Returns the identifier of the request for the first frame.
+    pub fn first(&self) -> Option<RequestId> {
         self.0.first().map(|frame| frame.id.clone())
     }
 
-    /// Renders a slice of the oldest frame. When the frame is finished, returns the answer to its
+    /// Renders a slice of the first frame. When the frame is finished, returns the answer to its
     /// request.
     pub fn advance(
         &mut self,
@@ -116,6 +132,7 @@ impl Frame {
         params: &Value,
         version: &SceneVersion,
     ) -> Result<Self, Refusal> {
+        let observer = observer(params, &version.scene)?;
         let scale = optional(params, "scale")?.unwrap_or(1);
         let samples = optional(params, "samples")?;
         let most: Option<u64> = optional(params, "pixels")?;
@@ -131,13 +148,13 @@ impl Frame {
             return Err(Refusal::invalid(message));
         }
         let fits = |scale: &u32| {
-            let (width, height) = version.size(*scale);
+            let (width, height) = version.size(observer.as_ref(), *scale);
             most.is_none_or(|most| Area::whole(width, height).pixels() <= most)
                 && longest.is_none_or(|longest| width.max(height) <= longest)
         };
         // With the greatest scale, a frame has only one pixel, so a suitable scale always exists.
         let scale = (scale..).find(fits).unwrap_or(u32::MAX);
-        let (width, height) = version.size(scale);
+        let (width, height) = version.size(observer.as_ref(), scale);
         let whole = Area::whole(width, height);
         if whole.pixels() > MOST_PIXELS {
             let message = format!(
@@ -163,27 +180,29 @@ impl Frame {
             id,
             uri,
             version: version.number,
+            observer,
             scale,
             samples,
+            work,
             slices: Slices::new(sampling, [width, height]).map_err(Refusal::failed)?,
         })
     }
 
     /// Renders the next slice. After the last slice, returns the answer.
     fn advance(&mut self, version: &mut SceneVersion) -> Result<Option<Value>, Refusal> {
-        let (_, world) = version.world(self.scale);
+        let (scene, world) = version.world(self.observer.as_ref(), self.scale);
+        let size = [scene.image.width, scene.image.height];
         if !self.slices.advance(world).map_err(Refusal::failed)? {
             return Ok(None);
         }
         let film = self.slices.film();
         let mut png = Vec::new();
         film::write_png(film, None, &mut png).map_err(Refusal::failed)?;
-        let image = &version.scene.image;
         Ok(Some(json!({
             "version": version.number,
             "width": film.width(),
             "height": film.height(),
-            "size": [image.width, image.height],
+            "size": size,
             "png": BASE64_STANDARD.encode(png),
         })))
     }

@@ -5,7 +5,8 @@
 //! and output. `text_requests` calls [`crate::editor`] for the answers, and `convert` converts them
 //! to the types of the protocol (`protocol`). `picture_requests` and `frames` answer requests about
 //! the picture of a text. These requests are Pinhole's own; docs/protocol.md describes them.
-//! `scene_version` caches the data for these answers.
+//! `scene_version` caches the data for these answers, and `view` reads from where a picture is seen
+//! that is not the picture of the scene's own camera.
 
 mod convert;
 mod documents;
@@ -18,6 +19,7 @@ mod scene_version;
 mod server;
 pub mod stdio;
 mod text_requests;
+mod view;
 
 pub use params::{Answer, Refusal, optional, response};
 pub use server::Server;

@@ -9,14 +9,17 @@ use super::{
     convert::Converter,
     params::{Answer, Refusal, at, optional},
     scene_version::SceneVersion,
+    view::{observer, written_camera, written_view},
 };
 use crate::{
     editor::{
         self, Analysis,
-        viewport::{self, Along, Drag, ObjectOverlay, Overlays, ShownObjects, Vanishing},
+        viewport::{
+            self, Along, Drag, ObjectOverlay, Overlays, PointedRay, ShownObjects, Vanishing,
+        },
     },
     numbers::{short, short_vector, significant},
-    scene::Object,
+    scene::{Object, Scene},
 };
 
 /// Prefix of the method names of those requests that Pinhole adds to the protocol.
@@ -106,7 +109,8 @@ fn add(
 
 fn pick(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) -> Answer {
     let at = point(params, "point")?;
-    let (scene, world) = version.world(1);
+    let observer = observer(params, &version.scene)?;
+    let (scene, world) = version.world(observer.as_ref(), 1);
     let (hit, color) = viewport::pick(scene, world, at).unzip();
     let hit = hit.flatten();
     let image = &scene.image;
@@ -200,14 +204,17 @@ fn shown(params: &Value) -> Result<ShownObjects, Refusal> {
 }
 
 fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) -> Answer {
-    let mut overlays = viewport::overlays(&version.scene, &shown(params)?);
+    let observer = observer(params, &version.scene)?;
+    let seen = observer.map(|observer| observer.scene(&version.scene));
+    let seen = seen.as_ref().unwrap_or(&version.scene);
+    let mut overlays = viewport::overlays(seen, &shown(params)?);
     let objects = &version.scene.objects;
     let has_board = overlays
         .objects
         .iter()
         .any(|it| is_board(&objects[it.object]));
     if has_board {
-        let (scene, world) = version.world(1);
+        let (scene, world) = version.world(observer.as_ref(), 1);
         viewport::hide(&mut overlays, scene, world);
     }
     let Overlays {
@@ -233,7 +240,7 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion
         object["handles"] = handles.collect();
         object
     });
-    Ok(json!({
+    let mut answer = json!({
         "size": size,
         "axis": written_point(axis),
         "horizon": horizon.map(|line| written_line(&line)),
@@ -241,6 +248,28 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion
         "near": written_lines(&near),
         "far": written_lines(&far),
         "objects": objects.collect::<Vec<_>>(),
+    });
+    if let Some(observer) = observer {
+        let pointed = pointed_ray(params, version)?;
+        let Scene { camera, image, .. } = &version.scene;
+        let camera = viewport::camera_overlay(camera, image, &observer.projection(), pointed);
+        answer["view"] = written_view(&observer);
+        answer["camera"] = written_camera(&camera, written_point, |lines| written_lines(lines));
+    }
+    Ok(answer)
+}
+
+/// Returns the ray of the scene's camera through the parameter `point`, a point of its picture;
+/// `None` if there is no such parameter, or if the point is outside of the picture.
+fn pointed_ray(params: &Value, version: &mut SceneVersion) -> Result<Option<PointedRay>, Refusal> {
+    let Some(pixel) = optional::<[f64; 2]>(params, "point")?.map(DVec2::from) else {
+        return Ok(None);
+    };
+    let (scene, world) = version.world(None, 1);
+    let found = viewport::pick(scene, world, pixel);
+    Ok(found.map(|(hit, _)| PointedRay {
+        pixel,
+        end: hit.map(|hit| hit.point),
     }))
 }
 
@@ -274,9 +303,11 @@ fn drag(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) ->
     let handle: String = at(params, "/handle")?;
     let along: Option<String> = optional(params, "along")?;
     let to = point(params, "to")?;
+    let observer = observer(params, &version.scene)?;
+    // From outside, the camera has handles, as objects have.
     let from = match object {
-        Some(_) => to,
-        None => point(params, "from")?,
+        None if observer.is_none() => point(params, "from")?,
+        _ => to,
     };
     let along = along.map(|name| {
         let message = || format!("`along` is x, y, z or floor, and not `{name}`");
@@ -289,6 +320,7 @@ fn drag(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) ->
         to,
         along: along.transpose()?,
         step: optional(params, "step")?,
+        observer,
     };
     let sources = &converter.document.sources;
     let (scene, alone) = version.alone(sources, object);
@@ -304,7 +336,7 @@ fn samples(params: &Value, version: &mut SceneVersion) -> Answer {
     if pixel[0] >= image.width || pixel[1] >= image.height {
         return Err(Refusal::invalid("`pixel` is no pixel of the picture"));
     }
-    let (scene, world) = version.world(1);
+    let (scene, world) = version.world(None, 1);
     let found = viewport::samples(scene, world, pixel).map_err(Refusal::failed)?;
     let samples = found.samples.iter();
     let (points, colors): (Vec<_>, Vec<_>) = samples

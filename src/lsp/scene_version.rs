@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 use crate::{
     editor::{
         Analysis,
-        viewport::{self, selections},
+        viewport::{self, Observer, selections},
     },
     scene::Scene,
     source::{Sources, Span},
@@ -31,11 +31,22 @@ pub struct SceneVersion {
     pub scene: Scene,
     /// Span of each object's name or, if an object has no name, of its keyword.
     pub selections: Vec<Span>,
-    worlds: VecDeque<(u32, World)>,
+    worlds: VecDeque<Pictured>,
     /// Text of the scene without all objects except the one that was dragged last, with the index
     /// of this object. The index is `None` if the camera was dragged. The field is `None` before
     /// the first drag.
     alone: Option<(Option<usize>, Sources)>,
+}
+
+/// A picture of the scene: by its own camera, or by an observer's.
+#[derive(Debug)]
+struct Pictured {
+    observer: Option<Observer>,
+    /// Factor by which the width and height of the picture are divided.
+    scale: u32,
+    /// The scene with the camera and the size of the picture, before the division.
+    scene: Scene,
+    world: World,
 }
 
 impl SceneVersion {
@@ -51,26 +62,36 @@ impl SceneVersion {
         })
     }
 
-    /// Returns the scene, and the data of the tracer for a picture whose width and height are
-    /// divided by `scale`. The data are cached.
-    pub fn world(&mut self, scale: u32) -> (&Scene, &World) {
-        let found = self.worlds.iter().position(|(known, _)| *known == scale);
+    /// Returns the scene as `observer` sees it (its own camera, if that is `None`), and the data of
+    /// the tracer for a picture whose width and height are divided by `scale`. The data are cached.
+    /// Of observers, only the newest one is kept, since they change with each step of the pointer.
+    pub fn world(&mut self, observer: Option<&Observer>, scale: u32) -> (&Scene, &World) {
+        let is_wanted = |it: &Pictured| it.observer.as_ref() == observer && it.scale == scale;
+        let found = self.worlds.iter().position(is_wanted);
         let index = found.unwrap_or_else(|| {
+            if observer.is_some() {
+                self.worlds
+                    .retain(|it| it.observer.is_none() || it.observer.as_ref() == observer);
+            }
             if self.worlds.len() == WORLDS {
                 self.worlds.pop_front();
             }
-            let world = match scale {
-                1 => World::new(&self.scene),
-                _ => {
-                    let mut scaled = self.scene.clone();
-                    (scaled.image.width, scaled.image.height) = self.size(scale);
-                    World::new(&scaled)
-                }
+            let scene = match observer {
+                Some(observer) => observer.scene(&self.scene),
+                None => self.scene.clone(),
             };
-            self.worlds.push_back((scale, world));
+            let mut scaled = scene.clone();
+            (scaled.image.width, scaled.image.height) = self.size(observer, scale);
+            self.worlds.push_back(Pictured {
+                observer: observer.copied(),
+                scale,
+                scene,
+                world: World::new(&scaled),
+            });
             self.worlds.len() - 1
         });
-        (&self.scene, &self.worlds[index].1)
+        let Pictured { scene, world, .. } = &self.worlds[index];
+        (scene, world)
     }
 
     /// Returns the scene, and a text that contains no other object than `object`, or no object at
@@ -83,9 +104,11 @@ impl SceneVersion {
         (&self.scene, alone)
     }
 
-    /// Returns the picture's width and height divided by `scale`, rounded up.
-    pub fn size(&self, scale: u32) -> (u32, u32) {
+    /// Returns the width and height of the picture, or of that of an observer, divided by `scale`,
+    /// rounded up.
+    pub fn size(&self, observer: Option<&Observer>, scale: u32) -> (u32, u32) {
         let image = &self.scene.image;
-        (image.width.div_ceil(scale), image.height.div_ceil(scale))
+        let [width, height] = observer.map_or([image.width, image.height], |it| it.size);
+        (width.div_ceil(scale), height.div_ceil(scale))
     }
 }

@@ -210,9 +210,9 @@ impl Server {
         outgoing
     }
 
-    /// Renders a slice of the oldest frame. When the frame is finished, returns the answer.
+    /// Renders a slice of the first frame. When the frame is finished, returns the answer.
     fn advance_frame(&mut self) -> Option<Message> {
-        let id = self.frames.oldest()?;
+        let id = self.frames.first()?;
         let (frames, scenes, last) = (&mut self.frames, &mut self.scenes, &mut self.last);
         let answer = catch_panics(|| frames.advance(scenes, last)).transpose()?;
         self.frames.cancel(&id);

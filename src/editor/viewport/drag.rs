@@ -13,6 +13,8 @@ use super::{
     camera,
     edits::{FieldChange, changes, edits, rounded, together},
     handles::{self, Along, TOLERANCE, TOO_FAR, handles, side_held},
+    observer::Observer,
+    outside::{camera_handles, moved_camera},
 };
 use crate::{
     diagnostic::{Diagnostic, Edit, Fix, apply},
@@ -48,6 +50,9 @@ pub struct Drag<'a> {
     /// a grid; `None` if the drag does not snap to a grid. The changed numbers are multiples of the
     /// grid's spacing, which is the greatest power of ten that satisfies this maximum.
     pub step: Option<f64>,
+    /// The observer in whose picture the pointer is; `None` if it is in the picture of the scene's
+    /// own camera.
+    pub observer: Option<Observer>,
 }
 
 /// Changes of a text that a dragged handle causes. All lists are empty if the picture would not
@@ -114,12 +119,22 @@ pub fn drag(
         None => "the text has no camera".to_owned(),
     })?;
     let image = &scene.image;
-    let projection = Projection::new(&scene.camera, image);
+    let projection = match drag.observer {
+        Some(observer) => observer.projection(),
+        None => Projection::new(&scene.camera, image),
+    };
     let (ideal, points) = match current {
         FieldOwner::Shape(shape) => {
             let held = handles(&shape, &projection, DVec3::ZERO)[0].1;
             let ideal = handles::moved(shape, drag.handle, drag.to, drag.along, &projection)?;
             (ideal, Some(Vec::from_iter(held)))
+        }
+        FieldOwner::Camera(own) if drag.observer.is_some() => {
+            let Drag {
+                handle, to, along, ..
+            } = *drag;
+            let moved = moved_camera(&own, image, handle, to, along, &projection)?;
+            (FieldOwner::Camera(moved), Some(Vec::new()))
         }
         _ => {
             let distance = camera::distance(scene);
@@ -180,9 +195,11 @@ pub fn drag(
         let (changes, rounding) = together(&changes, decimals);
         let changes = &changes;
         let edits = edits(analysis, block, changes, &rounding);
-        // If the drag snaps back to the old position, no edit is needed.
+        // If the drag snaps back to the old position, no edit is needed. If the numbers of the text
+        // are in another unit than the grid, they may also have too few decimals yet.
         let is_back = snapped.is_some() && rounded(current, changes, &rounding) == Some(current);
-        if is_back || (snapped.is_some() && edits.as_ref().is_some_and(Vec::is_empty)) {
+        let is_unchanged = snapped.is_some() && edits.as_ref().is_some_and(Vec::is_empty);
+        if is_back || (is_unchanged && view.agree(ideal, current, tolerance)) {
             return Ok(Dragged::default());
         }
         let Some(edits) = edits.filter(|edits| !edits.is_empty()) else {
@@ -380,23 +397,24 @@ struct DragView<'a> {
     image: &'a Image,
     projection: Projection,
     drag: &'a Drag<'a>,
-    /// Points in space by which two results of the drag are compared if the camera or a
-    /// checkerboard is dragged. Two results agree if these points appear at nearly equal places of
-    /// the picture.
+    /// Points in space by which two results of the drag are compared if the camera, in its own
+    /// picture, or a checkerboard is dragged. Two results agree if these points appear at nearly
+    /// equal places of the picture.
     points: Vec<DVec3>,
 }
 
 impl DragView<'_> {
     /// Returns the number of decimals of the grid that the drag snaps to, and `step`, which is in
     /// pixels. One unit in the last decimal moves the handle by at most `step`; the smallest number
-    /// of decimals with this property is used. Returns `None` for the camera, or if 12 decimals do
-    /// not suffice.
+    /// of decimals with this property is used. Returns `None` for the camera in its own picture, or
+    /// if 12 decimals do not suffice.
     fn snapped(&self, owner: FieldOwner, changes: &[FieldChange], step: f64) -> Option<(i32, f64)> {
         let held = |owner: FieldOwner| {
             let mut marks = self.marks(owner).into_iter();
             marks.find_map(|(is_held, at)| at.filter(|_| is_held))
         };
-        let here = held(owner).filter(|_| self.drag.object.is_some())?;
+        let has_handles = self.drag.object.is_some() || self.drag.observer.is_some();
+        let here = held(owner).filter(|_| has_handles)?;
         let is_small = |decimals: &i32| {
             let parts = changes
                 .iter()
@@ -434,6 +452,11 @@ impl DragView<'_> {
     fn marks(&self, owner: FieldOwner) -> Vec<(bool, Option<DVec2>)> {
         let points = self.points.iter();
         match owner {
+            FieldOwner::Camera(camera) if self.drag.observer.is_some() => {
+                let handles = camera_handles(&camera, self.image).into_iter();
+                let seen = |(name, at)| (name == self.drag.handle, self.projection.point(at));
+                handles.map(seen).collect()
+            }
             FieldOwner::Camera(camera) => {
                 let projection = Projection::new(&camera, self.image);
                 points.map(|at| (true, projection.point(*at))).collect()

@@ -244,7 +244,9 @@ pub fn moved(
             ..
         }) => match at {
             _ if handle == TRIANGLE.normal.name => {
-                Some(Value::Vector(turned_normal(&own, to, projection)))
+                let (foot, reach) = (own.centroid, own.sides.z);
+                let normal = turned_vector(foot, own.normal, reach, to, projection);
+                Some(Value::Vector(normal))
             }
             Some(apex) if handle == TRIANGLE.spin.name => {
                 Some(Value::Angle(spun(&own, apex, to, projection)?))
@@ -288,46 +290,68 @@ pub fn moved(
 ///
 /// Returns a sentence if the new position would be behind the eye, or too far from `to` because of
 /// rounding errors.
-fn moved_point(
+pub fn moved_point(
     point: DVec3,
     to: DVec2,
     along: Option<Along>,
     projection: &Projection,
 ) -> Result<DVec3, String> {
-    let mut across = DVec3::ZERO;
-    let moved = match along {
-        None => projection.on_plane(to, point, projection.ahead),
-        Some(Along::Floor) => projection.on_plane(to, point, DVec3::Y),
+    let (moved, across) = match along {
+        None => (
+            projection.on_plane(to, point, projection.ahead),
+            DVec3::ZERO,
+        ),
+        Some(Along::Floor) => (projection.on_plane(to, point, DVec3::Y), DVec3::ZERO),
         Some(Along::Axis(axis)) => {
-            // In the picture, the axis is a line. Its point nearest to `to` is on the perpendicular
-            // through `to`. All points in space that appear on this perpendicular form a plane
-            // through the eye. The moved point is where the axis intersects this plane.
-            let (axis, from_eye) = (DVec3::AXES[axis], point - projection.eye);
-            let normal = unit(from_eye.cross(axis)).0;
-            across = unit(normal.reject_from(projection.ahead)).0;
-            let plane = projection.ray(to).cross(across);
-            Some(point - axis * (from_eye.dot(plane) / axis.dot(plane)))
+            let (moved, across) = on_line(point, DVec3::AXES[axis], to, projection);
+            (Some(moved), across)
         }
     };
-    let seen = moved.and_then(|moved| Some((moved, projection.point(moved)?)));
-    let (moved, seen) = seen.ok_or_else(|| match along {
+    let unseen = || match along {
         Some(Along::Floor) => {
             let y = point.y;
-            format!("the plane y = {y}, in which it moves, is not seen there: come nearer, or drag it freely")
+            format!(
+                "the plane y = {y}, in which it moves, is not seen there: come nearer, or drag it freely"
+            )
         }
         Some(Along::Axis(axis)) => {
             let axis = AXES[axis];
             format!("its way along {axis} is not seen there: drag it along another axis, or freely")
         }
         None => TOO_FAR.to_owned(),
-    })?;
-    let across = DVec2::new(across.dot(projection.right), -across.dot(projection.top));
-    let left = (seen - to) - across * (seen - to).dot(across);
-    if left.length() <= TOLERANCE {
+    };
+    let moved = moved.filter(|moved| projection.point(*moved).is_some());
+    let moved = moved.ok_or_else(unseen)?;
+    if appears_at(moved, across, to, projection) {
         Ok(moved)
     } else {
         Err(TOO_FAR.to_owned())
     }
+}
+
+/// Returns the point of the line through `point` along `axis` that appears nearest to the point
+/// `to` of the picture. Also returns the direction in space, parallel to the view plane, that is
+/// perpendicular to the line in the picture.
+pub fn on_line(point: DVec3, axis: DVec3, to: DVec2, projection: &Projection) -> (DVec3, DVec3) {
+    // In the picture, the line's point nearest to `to` is on the perpendicular through `to`. All
+    // points in space that appear on this perpendicular form a plane through the eye. The returned
+    // point is where the line intersects this plane.
+    let from_eye = point - projection.eye;
+    let normal = unit(from_eye.cross(axis)).0;
+    let across = unit(normal.reject_from(projection.ahead)).0;
+    let plane = projection.ray(to).cross(across);
+    let moved = point - axis * (from_eye.dot(plane) / axis.dot(plane));
+    (moved, across)
+}
+
+/// Returns whether a point of space appears within [`TOLERANCE`] of the point `to` of the picture,
+/// apart from a difference in the direction `across`, which is parallel to the view plane.
+pub fn appears_at(point: DVec3, across: DVec3, to: DVec2, projection: &Projection) -> bool {
+    let across = DVec2::new(across.dot(projection.right), -across.dot(projection.top));
+    projection.point(point).is_some_and(|seen| {
+        let left = (seen - to) - across * (seen - to).dot(across);
+        left.length() <= TOLERANCE
+    })
 }
 
 /// Returns the radius of a sphere with the same centre whose silhouette passes through the point
@@ -349,21 +373,26 @@ fn radius(sphere: &Sphere, to: DVec2, projection: &Projection) -> Result<f64, St
     }
 }
 
-/// Returns the normal of a triangle whose tip, as drawn in the picture, appears at the point `to`.
-/// If the tips of two normals do, returns the normal on the same side of the view ray as the
-/// current one: towards the eye, or away from it. If none does, returns the normal whose tip
+/// Returns the vector at the point `foot` whose tip, drawn at the distance `reach` from there,
+/// appears at the point `to` of the picture. It has the length of the current vector, `vector`. If
+/// the tips of two vectors appear there, returns the one on the same side of the view ray as the
+/// current one: towards the eye, or away from it. If none does, returns the vector whose tip
 /// appears nearest.
-fn turned_normal(triangle: &CenteredTriangle, to: DVec2, projection: &Projection) -> DVec3 {
-    let reach = triangle.sides.z;
+pub fn turned_vector(
+    foot: DVec3,
+    vector: DVec3,
+    reach: f64,
+    to: DVec2,
+    projection: &Projection,
+) -> DVec3 {
     let (ray, _) = unit(projection.ray(to));
-    let center = triangle.centroid - projection.eye;
-    // The normal's tip is drawn at the distance `reach` from the centroid. So the new tip is where
-    // the ray through `to` meets the sphere with the radius `reach` around the centroid. `foot` is
-    // the vector from the centroid to the nearest point of the ray.
-    let foot = ray * center.dot(ray) - center;
-    let (normal, length) = unit(triangle.normal);
-    let rest = (reach - foot.length()) * (reach + foot.length());
-    let tip = foot + ray * rest.max(0.0).sqrt().copysign(normal.dot(ray));
+    let center = foot - projection.eye;
+    // The new tip is where the ray through `to` meets the sphere with the radius `reach` around
+    // the vector's foot. `nearest` is the vector from the foot to the nearest point of the ray.
+    let nearest = ray * center.dot(ray) - center;
+    let (direction, length) = unit(vector);
+    let rest = (reach - nearest.length()) * (reach + nearest.length());
+    let tip = nearest + ray * rest.max(0.0).sqrt().copysign(direction.dot(ray));
     unit(tip).0 * length
 }
 

@@ -7,7 +7,8 @@
 //!
 //! `lines` projects lines into the picture. `handles` computes the handles of an object and moves
 //! the object, `camera` moves the camera, and `edits` writes the changed fields into the text.
-//! `drag` combines them. `add` writes new blocks.
+//! `drag` combines them. `add` writes new blocks. `observer` is a second camera, from which the
+//! scene is shown together with its own; `outside` draws that one there, and moves it.
 
 mod add;
 mod camera;
@@ -15,6 +16,8 @@ mod drag;
 mod edits;
 mod handles;
 mod lines;
+mod observer;
+mod outside;
 mod overlays;
 mod pick;
 
@@ -28,6 +31,8 @@ pub use add::{Added, add, duplicate};
 pub use drag::{Drag, Dragged, alone, drag};
 pub use handles::Along;
 pub use lines::clip;
+pub use observer::{Observer, USUAL_FOV, beside};
+pub use outside::{CameraHandle, CameraOverlay, PointedRay, camera_overlay};
 pub use overlays::{
     MOST_OBJECTS, ObjectOverlay, Overlays, ShownObjects, Vanishing, hide, overlays,
 };

@@ -117,6 +117,7 @@ fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> St
         to: point(to),
         along: along.and_then(|along| Along::named(along)),
         step: None,
+        observer: None,
     };
     match dragged(&format!("{start}{text}"), &moved) {
         Ok(text) => text[start.len()..].to_owned(),

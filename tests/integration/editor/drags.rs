@@ -189,7 +189,7 @@ proptest! {
         let to = point_of(&before, to);
         let handles = handles(&before);
         let handle = handles[which % handles.len()];
-        let moved = Drag { object: Some(0), handle, from: to, to, along: Along::named(word), step: None };
+        let moved = Drag { object: Some(0), handle, from: to, to, along: Along::named(word), step: None, observer: None };
         let Ok(changed) = dragged(&text, &moved) else { return Ok(()) };
         let mut after = read(&changed);
         prop_assert_eq!(after.objects.len(), before.objects.len());
@@ -245,7 +245,7 @@ proptest! {
         let reading = scene::read(&sources(&text));
         let Some(before) = reading.scene else { return Ok(()) };
         let [from, to] = [from, to].map(|point| point_of(&before, point));
-        let moved = Drag { object: None, handle, from, to, along: None, step: None };
+        let moved = Drag { object: None, handle, from, to, along: None, step: None, observer: None };
         let Ok(changed) = dragged(&text, &moved) else { return Ok(()) };
         let after = read(&changed);
         prop_assert_eq!(&after.objects, &before.objects);
@@ -287,6 +287,7 @@ fn drag_repeatedly(block: &str, handle: &str, step: Option<f64>) -> Vec<Shape> {
             to,
             along: None,
             step,
+            observer: None,
         };
         // A drag that would move a face past the opposite face is refused, and the text stays as it
         // is.
@@ -387,6 +388,7 @@ fn dragging_one_handle_leaves_the_other_sides_and_edges_unchanged() {
             to,
             along: None,
             step: None,
+            observer: None,
         };
         panned = dragged(&panned, &moved).expect("it is panned");
     }

@@ -2,6 +2,7 @@
 
 mod answers;
 mod drags;
+mod outside;
 mod prefixes;
 mod rules;
 mod semantic_tokens;

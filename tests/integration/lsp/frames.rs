@@ -17,7 +17,7 @@ checkerboard {}
 ";
 
 const CONTENT_MODIFIED: i32 = -32801;
-const CANCELLED: i32 = -32800;
+pub const CANCELLED: i32 = -32800;
 
 /// Returns the text of the test scene with another width and height.
 fn sized(width: &str, height: &str) -> String {
@@ -38,7 +38,7 @@ fn pixels(png: &[u8]) -> (u32, u32, Vec<u8>) {
     (rgb.width(), rgb.height(), rgb.into_raw())
 }
 
-fn shown(frame: &Value) -> (u32, u32, Vec<u8>) {
+pub fn shown(frame: &Value) -> (u32, u32, Vec<u8>) {
     let png = frame["png"].as_str().expect("a picture");
     let found = pixels(&BASE64_STANDARD.decode(png).expect("base64"));
     assert_eq!(
@@ -49,7 +49,7 @@ fn shown(frame: &Value) -> (u32, u32, Vec<u8>) {
 }
 
 /// Returns the picture of a scene that `pinhole render` makes with the `--set` arguments `sets`.
-fn rendered(text: &str, sets: &str) -> (u32, u32, Vec<u8>) {
+pub fn rendered(text: &str, sets: &str) -> (u32, u32, Vec<u8>) {
     let folder = Folder::with([("a.scn", text)]);
     let sets = sets.split_whitespace().map(|set| format!(" --set {set}"));
     folder.told(&format!("render a.scn{}", sets.collect::<String>()), 0);

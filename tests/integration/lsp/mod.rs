@@ -10,6 +10,7 @@ mod neovim;
 mod session;
 mod sliders;
 mod transcripts;
+mod view;
 mod viewport;
 
 use std::{env, ffi::OsString, path::Path};

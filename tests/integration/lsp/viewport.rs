@@ -8,7 +8,7 @@ use super::{
     local_client::LocalClient,
 };
 
-const FAILED: i32 = -32803;
+pub const FAILED: i32 = -32803;
 
 /// In a scene with very many objects, overlays are sent for the first 1000 objects and for the
 /// requested one.
