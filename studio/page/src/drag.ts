@@ -1,18 +1,27 @@
 // A drag of an object's handle or of the camera. Its result depends only on its first and latest
 // point and on the text at the press. The server gets this text under a separate URI.
 
-import { byId, newestOf } from "./dom";
+import { byId, followPointer, newestOf } from "./dom";
 import { editor } from "./editor";
 import { frames } from "./frames";
 import { Gesture } from "./gesture";
-import { picture } from "./picture";
-import { isSuperseded, Refusal, type Dragged, type Point } from "./protocol";
+import { picture, type Picture } from "./picture";
+import { isSuperseded, Refusal, type Dragged, type Point, type View } from "./protocol";
 import { tools } from "./tools";
 import { setText } from "./visible";
 
 /** A handle that the user drags. `at` is its point in the picture when the drag began, and `object`
  * is null if the handle belongs to the camera. */
 export interface Held { object: number | null; handle: string; at: Point }
+
+/** A picture in which drags take place. `view` is the camera that shows it, or null if that is the
+ * scene's own. */
+export interface Surface { readonly picture: Picture; readonly view: View | null }
+const own: Surface = { picture, view: null };
+
+/** Maximum movement of the pointer in a click, in screen pixels. A hand is never quite still, so
+ * only a larger movement begins a drag. */
+const CLICK = 4;
 
 const BROKEN = "The text has errors. Mend them, then the picture can be changed by hand.";
 const WAITING = "Waiting for Studio…";
@@ -50,6 +59,8 @@ export class Drag {
   private slow = 0;
   private over = false;
   private gesture = new Gesture(editor.view);
+  /** The dragged handle; null until it is known. */
+  held: Held | null = null;
   private readonly holding: Promise<Held | null>;
   /** Settles when the edit for the last point has been made. */
   private work: Promise<unknown>;
@@ -60,8 +71,10 @@ export class Drag {
 
   /** Begins a drag at the point `press`. `hold` returns the dragged handle, or a promise of it if
    * the server must first find it. */
-  constructor(private readonly press: Point, hold: () => Promise<Held | null> | Held) {
+  constructor(private readonly press: Point, hold: () => Promise<Held | null> | Held,
+    private readonly surface = own) {
     this.target = press;
+    surface.picture.stage.append(byId("drag-place"));
     frames.dragging = this;
     this.work = this.holding = this.begin(ended, hold);
     ended = Promise.all([ended, this.done]);
@@ -71,7 +84,7 @@ export class Drag {
     await before;
     if (this.over) return null;
     this.gesture = new Gesture(editor.view);
-    return hold();
+    return (this.held = await hold());
   }
 
   to(target: Point): void {
@@ -108,8 +121,9 @@ export class Drag {
     // the same vector as the pointer. For the camera, the server gets the first and the latest
     // point.
     const to = object === null ? place : [at[0] + place[0] - press[0], at[1] + place[1] - press[1]];
-    const about = { textDocument: { uri }, object, handle, from: press, to, along: tools.along,
-      step: tools.step };
+    const { picture, view } = this.surface;
+    const about = { textDocument: { uri }, object, handle, from: press, to, view,
+      along: tools.along(object !== null), step: tools.step(picture) };
     try {
       const answer = await editor.request<Dragged | null>("pinhole/drag", about);
       if (this.over) return;
@@ -143,6 +157,23 @@ export class Drag {
   private say(text: string, tone: "plain" | "warning"): void {
     clearTimeout(this.slow);
     this.slow = 0;
-    showNote(text, tone, picture.toScreen(this.target));
+    showNote(text, tone, this.surface.picture.toScreen(this.target));
   }
+}
+
+/** Begins a drag that follows a pressed pointer. Returns a function that cancels it. */
+export function dragWith(event: PointerEvent, start: Point,
+  hold: () => Promise<Held | null> | Held, surface = own): () => void {
+  const drag = new Drag(start, hold, surface);
+  let moved = false;
+  const { zoom } = surface.picture;
+  const move = (next: PointerEvent) => {
+    tools.held = next;
+    // The movement is measured in screen pixels, because the picture itself may be moved during the
+    // drag.
+    const [dx, dy] = [next.clientX - event.clientX, next.clientY - event.clientY];
+    moved ||= Math.hypot(dx, dy) > CLICK;
+    if (moved) drag.to([start[0] + dx / zoom, start[1] + dy / zoom]);
+  };
+  return followPointer(event, move, () => drag.end(), () => drag.cancel());
 }

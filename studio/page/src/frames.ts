@@ -36,7 +36,8 @@ const SOON = 200;
 /** A requested picture: its text, and the number of the request. */
 interface Asked { doc: Text | null; generation: number }
 
-class Frames {
+/** Pictures of the newest text, seen by one camera. */
+export class Frames {
   onShow: (shown: Shown) => void = () => {};
   /** Called when it is known whether the newest text has errors (`broken`) or not (`good`), and
    * with the error if a request fails. */
@@ -50,6 +51,9 @@ class Frames {
 
   /** The picture that the page shows, with its request. The picture may be of an older text. */
   shown: Shown & Asked | null = null;
+
+  /** `more` are further parameters of the requests. */
+  constructor(private readonly more: () => object = () => ({})) {}
 
   private generation = 0;
   /** Whether the server's newest answer about a text said that the text has errors. */
@@ -74,7 +78,9 @@ class Frames {
   private async refine(asked: Asked, coarse: Promise<Frame | null>): Promise<void> {
     const frame = await this.present(asked, "coarse", coarse);
     if (frame === null) return;
-    if (this.dragging !== null) await new Promise(resolve => setTimeout(resolve, HAND_RESTS));
+    // Of a second view, finer pictures are requested when the drag has ended.
+    if (frames.dragging !== null && this !== frames) return;
+    if (frames.dragging !== null) await new Promise(resolve => setTimeout(resolve, HAND_RESTS));
     if (asked.generation !== this.generation) return;
     const isSharper = frame.width < frame.size[0];
     if (isSharper && this.lastTook > SOON
@@ -85,7 +91,7 @@ class Frames {
   }
 
   private ask(how: { pixels?: number; samples?: number; last?: boolean }) {
-    return editor.request<Frame | null>("pinhole/frame", { ...MOST, ...how });
+    return editor.request<Frame | null>("pinhole/frame", { ...MOST, ...this.more(), ...how });
   }
 
   /** Shows a requested picture when it arrives. Returns it if its text is still the newest. */

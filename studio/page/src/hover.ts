@@ -2,6 +2,7 @@
 
 import { newestOf } from "./dom";
 import { editor } from "./editor";
+import { outside } from "./outside";
 import { overlays } from "./overlays";
 import { picture } from "./picture";
 import type { Pick, Point, Samples } from "./protocol";
@@ -12,11 +13,13 @@ let place: Point | null = null;
 
 picture.stage.addEventListener("pointermove", event => {
   place = event.pointerType === "touch" ? null : picture.local(event);
+  outside.point(place && picture.toPicture(place));
   if (event.buttons !== 0) tell("");
   else hoverAgain();
 });
 picture.stage.addEventListener("pointerleave", () => {
   place = null;
+  outside.point(null);
   void hover(null);
 });
 

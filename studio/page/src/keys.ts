@@ -15,7 +15,7 @@ const KEY_STEP = 10;
  * repeats faster, so that its repetitions belong to one drag. */
 const KEY_PAUSE = 500;
 
-const ARROWS: Record<string, Point> =
+export const ARROWS: Record<string, Point> =
   { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 /** Elements in which keys do not control the picture, because they need all keys, e.g. to type
@@ -71,16 +71,14 @@ function down(event: KeyboardEvent): void {
   const whole = nameOf(event);
   const isElsewhere = on.closest(TEXT) !== null && !SAVE.includes(whole);
   if (event.defaultPrevented || isElsewhere) return;
-  const isOfControl = on.closest(CONTROL) !== null && on.closest("#stage") === null;
+  const isOfControl = on.closest(CONTROL) !== null && on.closest("#stage, #outside") === null;
   if (isOfControl && (arrow !== undefined || key === " " || key === "Escape")) return;
   tools.held = event;
   clearTimeout(pause);
   if (arrow === undefined && !["Escape", "Shift", "Control"].includes(key)) endKeys();
   if (event.altKey || (event.metaKey && arrow !== undefined)) return;
   if (arrow !== undefined) {
-    const step = event.ctrlKey ? KEY_STEP / 10 : KEY_STEP;
-    drag ??= begin(on);
-    drag?.by([arrow[0] * step, arrow[1] * step]);
+    dragByKey(event, arrow, () => begin(on));
   } else if (whole === "Escape") {
     // Escape also cancels a drag that was released but still waits for the server.
     if (frames.dragging instanceof Drag) frames.dragging.cancel();
@@ -95,6 +93,14 @@ function down(event: KeyboardEvent): void {
     control.click();
   }
   event.preventDefault();
+}
+
+/** Moves by an arrow key what an earlier one began to drag, or what `start` begins to. */
+export function dragByKey(event: KeyboardEvent, [x, y]: Point, start: () => Drag | null): void {
+  clearTimeout(pause);
+  const step = event.ctrlKey ? KEY_STEP / 10 : KEY_STEP;
+  drag ??= start();
+  drag?.by([x * step, y * step]);
 }
 
 function up(event: KeyboardEvent): void {

@@ -15,6 +15,7 @@ import { hintField, openSwatch, refreshHints } from "./hints";
 import "./layout";
 import { numberControls } from "./numbers";
 import { listObjects, refreshOutlines } from "./outlines";
+import { outside } from "./outside";
 import { overlays } from "./overlays";
 import { picture } from "./picture";
 import { feedProjectors, isProjector } from "./projector";
@@ -57,6 +58,7 @@ frames.onState = state => {
 };
 frames.onRest = () => {
   rested();
+  outside.changed();
   if (waiting !== null) void hosted(waiting);
 };
 
@@ -71,6 +73,7 @@ function changed(): void {
   if (editor.uri === "") return;
   frames.changed();
   void refreshOutlines();
+  outside.changed();
   files.show();
   draftChanged();
   // Hints, sliders and objects are not updated during a drag.
@@ -91,7 +94,10 @@ function rested(): void {
   }, REST);
 }
 
-overlays.onNeed = selection.onChange = () => void refreshOutlines();
+overlays.onNeed = selection.onChange = () => {
+  void refreshOutlines();
+  void outside.refresh();
+};
 picture.onView = () => {
   overlays.draw();
   selection.draw();
@@ -148,6 +154,7 @@ byId("redo").addEventListener("click", () => redo(editor.view));
 // The editor creates elements only for visible lines, so printing needs a copy of the text.
 addEventListener("beforeprint", () => {
   picture.fit();
+  outside.picture.fit();
   setText(byId("print-text"), `${files.at.name}, ${new Date().toLocaleString()}\n\n${editor.text}`);
 });
 if (!isProjector) connection.open();

@@ -8,7 +8,7 @@ import { setText } from "./visible";
 /** Names of the optional layers. Their checkboxes in the menu have the same names. */
 export type Layer = "outlines" | "vanishing" | "horizon" | "axis" | "grid" | "near" | "samples";
 
-const boxes = [...document.querySelectorAll<HTMLInputElement>("#layers input")];
+const boxes = [...document.querySelectorAll<HTMLInputElement>("#layers [name]")];
 
 /** Minimum zoom at which the pixel grid is drawn, in screen pixels per pixel. Chosen by eye: at a
  * lower zoom, the lines would hide the picture. */
@@ -69,10 +69,7 @@ class OverlayLayer {
     if (data === null) return;
     const group = createSvg("g", { transform: picture.matrix });
     svg.append(group);
-    const path = (name: string, lines: readonly Polyline[]) => {
-      const d = lines.map(line => `M${line.join("L")}`).join("");
-      if (d !== "") group.append(...twice({ d }, name));
-    };
+    const path = (name: string, lines: readonly Polyline[]) => drawLines(group, name, lines);
     if (this.isOn("grid") && picture.zoom >= GRID_ZOOM) path("grid", grid());
     if (this.isOn("near")) for (const it of ["near", "far"] as const) path(it, data[it]);
     if (this.isOn("horizon") && data.horizon !== null) path("horizon", [data.horizon]);
@@ -135,6 +132,12 @@ class OverlayLayer {
       this.svg.append(dot);
     });
   }
+}
+
+/** Draws lines of the class `name` into a group. */
+export function drawLines(group: SVGElement, name: string, lines: readonly Polyline[]): void {
+  const d = lines.map(line => `M${line.join("L")}`).join("");
+  if (d !== "") group.append(...twice({ d }, name));
 }
 
 /** Returns a light line over a dark one. One of them is visible on any background. */

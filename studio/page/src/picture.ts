@@ -10,11 +10,15 @@ const MOST_ZOOM = 64;
 /** Margin around the whole picture in its area, in screen pixels, so that its edge is visible. */
 const MARGIN = 12;
 
-class Picture {
+export class Picture {
   /** Called when the zoom, the position or the size of the picture has changed. */
   onView: () => void = () => {};
   /** Called when the wheel moves the camera. `turned` is 1 for 300 pixels of scrolling. */
   onDolly: (turned: number) => void = () => {};
+  onWheel = (turned: number, event: WheelEvent): void => {
+    if (event.shiftKey) this.onDolly(turned);
+    else this.zoomBy(2 ** -turned, this.local(event));
+  };
   size: [number, number] = [1280, 720];
   zoom = 1;
 
@@ -23,7 +27,8 @@ class Picture {
   private fitted = true;
   private readonly context: CanvasRenderingContext2D;
 
-  constructor(readonly stage: HTMLElement, readonly canvas: HTMLCanvasElement) {
+  constructor(readonly stage: HTMLElement, readonly canvas: HTMLCanvasElement,
+    private readonly margin = MARGIN) {
     const context = canvas.getContext("2d", { alpha: false });
     if (context === null) throw new Error("this browser has no canvas");
     this.context = context;
@@ -32,9 +37,7 @@ class Picture {
       event.preventDefault();
       if (event.buttons !== 0) return; // a drag is under way
       // While the Shift key is held, browsers report the wheel's movement as `deltaX`.
-      const turned = (event.deltaY || event.deltaX) / (event.deltaMode === 0 ? 300 : 10);
-      if (event.shiftKey) this.onDolly(turned);
-      else this.zoomBy(2 ** -turned, this.local(event));
+      this.onWheel((event.deltaY || event.deltaX) / (event.deltaMode === 0 ? 300 : 10), event);
     }, { passive: false });
   }
 
@@ -80,8 +83,8 @@ class Picture {
   fit(): void {
     const { clientWidth, clientHeight } = this.stage;
     const [width, height] = this.size;
-    this.center(Math.max(0.01, Math.min((clientWidth - 2 * MARGIN) / width,
-      (clientHeight - 2 * MARGIN) / height)));
+    this.center(Math.max(0.01, Math.min((clientWidth - 2 * this.margin) / width,
+      (clientHeight - 2 * this.margin) / height)));
     this.fitted = true;
   }
 

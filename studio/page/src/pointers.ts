@@ -1,18 +1,13 @@
 // Mouse, pen and touch on the picture: a press begins a drag, and two fingers pan and zoom the
 // picture. While the space bar is held, a drag pans the picture.
 
-import { followPointer } from "./dom";
-import { Drag, type Held } from "./drag";
+import { dragWith, type Held, type Surface } from "./drag";
 import { editor } from "./editor";
 import { endKeys, space } from "./keys";
 import { picture } from "./picture";
-import type { Overlays, Pick, Point } from "./protocol";
+import type { Overlays, Pick, Point, SceneObject } from "./protocol";
 import { selection } from "./selection";
 import { tools, type Tool } from "./tools";
-
-/** Maximum movement of the pointer in a click, in screen pixels. A hand is never quite still, so
- * only a larger movement begins a drag. */
-const CLICK = 4;
 
 /** Tools that the middle (1) and the right (2) mouse button use, whichever tool is chosen. */
 const BUTTONS: Record<number, Tool> = { 1: "pan", 2: "orbit" };
@@ -43,37 +38,24 @@ function press(event: PointerEvent): void {
   const tool = BUTTONS[event.button] ?? tools.tool;
   const button = (event.target as Element).closest(".handle");
   const held = button === null ? null : selection.held(button);
-  if (held !== null && event.button === 0) follow(event, start, () => held);
-  else if (tool === "move") follow(event, start, () => grab(start));
-  else follow(event, start, () => ({ object: null, handle: tool, at: start }));
-}
-
-function follow(event: PointerEvent, start: Point, hold: () => Promise<Held | null> | Held): void {
-  const drag = new Drag(start, hold);
-  let moved = false;
-  const { zoom } = picture;
-  const move = (next: PointerEvent) => {
-    tools.held = next;
-    // The movement is measured in screen pixels, because the picture itself may be moved during the
-    // drag.
-    const [dx, dy] = [next.clientX - event.clientX, next.clientY - event.clientY];
-    moved ||= Math.hypot(dx, dy) > CLICK;
-    if (moved) drag.to([start[0] + dx / zoom, start[1] + dy / zoom]);
-  };
-  giveUp = followPointer(event, move, () => drag.end(), () => drag.cancel());
+  if (held !== null && event.button === 0) giveUp = dragWith(event, start, () => held);
+  else if (tool === "move") giveUp = dragWith(event, start, () => grab(start));
+  else giveUp = dragWith(event, start, () => ({ object: null, handle: tool, at: start }));
 }
 
 /** Selects the object at `point` and returns its centre as a handle. Returns null if there is no
- * object, or if its centre is not visible in the picture. */
-async function grab(point: Point): Promise<Held | null> {
+ * object, if its centre is not visible in the picture, or if `isMeant` is false for it. */
+export async function grab(point: Point, view: Surface["view"] = null,
+  isMeant: (object: SceneObject | null) => boolean = () => true): Promise<Held | null> {
   const { choices } = selection;
-  const pick = await editor.ask<Pick>("pinhole/pick", { point });
+  const pick = await editor.ask<Pick>("pinhole/pick", { point, view });
   const object = pick?.object ?? null;
+  if (!isMeant(object)) return null;
   // If the user has selected something before the answer came, that selection stays.
   if (choices === selection.choices) selection.select(object);
   if (object === null) return null;
   const only = [object.index];
-  const overlays = await editor.ask<Overlays>("pinhole/overlays", { only });
+  const overlays = await editor.ask<Overlays>("pinhole/overlays", { only, view });
   const handles = overlays?.objects[0]?.handles;
   const middle = handles?.find(it => it.handle === "center" || it.handle === "centroid");
   if (!middle?.at) return null;

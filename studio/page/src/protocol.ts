@@ -28,7 +28,23 @@ export interface Overlays {
   vanishing: { axis: "x" | "y" | "z"; point: Point | null; lines: Polyline[] }[];
   near: Polyline[]; far: Polyline[];
   objects: DrawnObject[];
+  /** The view from outside that was asked for, and the scene's camera in it. */
+  view?: View;
+  camera?: {
+    lines: Record<CameraLine, Polyline[]>;
+    handles: Handle[];
+    met: Point[];
+  };
 }
+
+export type Vector = readonly [number, number, number];
+
+/** A second camera, which shows the scene from outside. */
+export interface View { eye: Vector; lookat: Vector; up: Vector; fov: number; size: Point }
+
+/** Lines of the scene's camera in a view from outside. */
+export type CameraLine =
+  "frustum" | "rays" | "axis" | "window" | "near" | "far" | "up" | "ray";
 
 export interface Pick {
   object: SceneObject | null;

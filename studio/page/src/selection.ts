@@ -7,10 +7,11 @@ import { byId, createButton, create } from "./dom";
 import type { Held } from "./drag";
 import { editor } from "./editor";
 import { overlays } from "./overlays";
-import { picture } from "./picture";
+import { picture, type Picture } from "./picture";
 import { tools } from "./tools";
 import type { Added, DrawnObject, Handle, Point, SceneObject } from "./protocol";
 import { say } from "./status";
+import { setText } from "./visible";
 
 /** Minimum distance between two handles, in screen pixels. It is the width of the area in which a
  * handle can be pressed, which is larger for fingers than for a mouse. */
@@ -143,28 +144,7 @@ class Selection {
   /** Places the handles of the selected object over the picture. */
   draw(): void {
     const object = this.drawn;
-    const shown = object?.handles.filter(it => it.at !== null) ?? [];
-    const names = JSON.stringify([object?.index, object?.label, ...shown.map(it => it.handle)]);
-    // The elements are replaced only if the handles' names change, because the pointer may be
-    // dragging one of them.
-    if (names !== this.handles.dataset["names"]) this.handles.replaceChildren(
-      ...shown.map(it => this.createHandle(object as DrawnObject, it)));
-    this.handles.dataset["names"] = names;
-    const taken: Point[] = [];
-    shown.forEach(({ at }, i) => {
-      const [x, y] = apart(picture.toScreen(at as Point), taken);
-      taken.push([x, y]);
-      const button = this.handles.children[i] as HTMLElement;
-      button.style.transform = `translate(${x}px, ${y}px) translate(-50%, -50%)`;
-    });
-  }
-
-  private createHandle(object: DrawnObject, { handle, label }: Handle): HTMLButtonElement {
-    const button = createButton("", "handle", () => {}, `${object.label}: ${label}`);
-    button.dataset["handle"] = handle;
-    button.dataset["object"] = String(object.index);
-    button.append(create("span", "handle-label", label));
-    return button;
+    placeHandles(this.handles, picture, object === undefined ? [] : handlesOf(object));
   }
 
   /** Returns the handle of the selected object that `element` shows. If `element` is null, returns
@@ -177,6 +157,39 @@ class Selection {
     if (object === undefined || !handle?.at) return null;
     return { object: object.index, handle: handle.handle, at: handle.at };
   }
+}
+
+/** A handle with the object that it belongs to. `object` is null if it belongs to the camera. */
+export interface OwnedHandle extends Handle { object: number | null; owner: string }
+
+export function handlesOf({ index, label, handles }: DrawnObject): OwnedHandle[] {
+  return handles.map(it => ({ ...it, object: index, owner: label }));
+}
+
+/** Places buttons for the visible handles over the picture `where`. */
+export function placeHandles(parent: HTMLElement, where: Picture,
+  handles: readonly OwnedHandle[]): void {
+  const shown = handles.filter(it => it.at !== null);
+  const names = JSON.stringify(shown.map(it => [it.object, it.handle]));
+  // The elements are replaced only if the handles' names change, because the pointer may be
+  // dragging one of them.
+  if (names !== parent.dataset["names"]) parent.replaceChildren(...shown.map(it => {
+    const button = createButton("", "handle", () => {});
+    button.dataset["handle"] = it.handle;
+    button.dataset["object"] = String(it.object);
+    button.append(create("span", "handle-label"));
+    return button;
+  }));
+  parent.dataset["names"] = names;
+  const taken: Point[] = [];
+  shown.forEach(({ at, label, owner }, i) => {
+    const [x, y] = apart(where.toScreen(at as Point), taken);
+    taken.push([x, y]);
+    const button = parent.children[i] as HTMLElement;
+    button.setAttribute("aria-label", `${owner}: ${label}`);
+    setText(button.firstElementChild as HTMLElement, label);
+    button.style.transform = `translate(${x}px, ${y}px) translate(-50%, -50%)`;
+  });
 }
 
 /** Returns a position near a handle's point that is far enough from the positions in `taken`. */

@@ -5,6 +5,7 @@ import { byId, download, fromBase64 } from "./dom";
 import { connection } from "./connection";
 import { editor } from "./editor";
 import { files } from "./files";
+import { outside } from "./outside";
 import { say } from "./status";
 import { setText } from "./visible";
 
@@ -93,7 +94,7 @@ byId("copy").addEventListener("click", () => {
 byId("share").addEventListener("click", async () => {
   if (editor.text.length > LONGEST) return say(
     "The scene is too long for a link: give away its file.", "warning");
-  field.value = addressWith(KEY, await packed(editor.text));
+  field.value = addressWith(KEY, await packed(editor.text)) + outside.inLink;
   dialog.showModal();
   field.select();
 });

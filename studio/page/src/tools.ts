@@ -2,7 +2,7 @@
 // plane along which objects move.
 
 import { byId } from "./dom";
-import { picture } from "./picture";
+import { picture, type Picture } from "./picture";
 import type { Along } from "./protocol";
 import { setText } from "./visible";
 
@@ -45,10 +45,17 @@ class Tools {
   /** Axis or plane of drags without the Shift key; `""` is none. */
   private get kept(): Along | "" { return this.chosen ?? (this.hasFloor ? "floor" : ""); }
 
-  get along(): Along | undefined { return this.held.shiftKey ? undefined : this.kept || undefined; }
+  /** Axis or plane along which a drag moves an object, or a handle of the camera. The floor is a
+   * default for objects only. */
+  along(isObject: boolean): Along | undefined {
+    const along = isObject ? this.kept : this.chosen;
+    return this.held.shiftKey ? undefined : along || undefined;
+  }
 
-  /** Step of a drag, in pixels of the picture; undefined while the Control key is held. */
-  get step(): number | undefined { return this.held.ctrlKey ? undefined : STEP / picture.zoom; }
+  /** Step of a drag, in pixels of `where`; undefined while the Control key is held. */
+  step(where: Picture): number | undefined {
+    return this.held.ctrlKey ? undefined : STEP / where.zoom;
+  }
 }
 
 export const tools = new Tools();

@@ -1,7 +1,7 @@
 // Measures, in the page, how long pictures of figure 9.9 take at 1280 × 720: from a key and from a
 // step of a drag to the coarse and to the finished picture, as medians of 100; the coarse pictures
 // per second of a drag; and whether memory grows. `node test/bench.mjs [drags of 100 steps]`; with
-// SITE, for the static page in that folder.
+// SITE, for the static page in that folder; with OUTSIDE=hidden, without the view from outside.
 
 import { chromium } from "playwright-core";
 import { readFileSync } from "node:fs";
@@ -24,12 +24,13 @@ ending.push(() => host.stop?.());
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", "--enable-precise-memory-info", "--js-flags=--expose-gc"] });
 try {
   const page = await open(browser, host);
+  if (process.env.OUTSIDE === "hidden") await page.click("#outside-hide");
   // Times are from the browser's event to the picture on the canvas.
   await page.evaluate(() => {
     window.begin = 0;
     window.frames = [];
     for (const type of ["keydown", "pointermove"]) addEventListener(type, event => (window.begin = event.timeStamp), true);
-    addEventListener("pinhole-frame", ({ detail: { fineness, version } }) => window.frames.push({ fineness, version, at: performance.now(), after: performance.now() - window.begin }));
+    addEventListener("pinhole-frame", ({ target, detail: { fineness, version } }) => target.id === "canvas" && window.frames.push({ fineness, version, at: performance.now(), after: performance.now() - window.begin }));
   });
   const measure = async act => {
     const times = { coarse: [], final: [] };
@@ -114,7 +115,7 @@ try {
     await page.waitForTimeout(1000);
     await page.evaluate(() => {
       for (const type of ["keydown", "pointermove"]) addEventListener(type, event => (window.begin = event.timeStamp), true);
-      addEventListener("pinhole-frame", ({ detail: { fineness } }) => fineness === "coarse" && window.coarse.push(performance.now() - window.begin));
+      addEventListener("pinhole-frame", ({ target, detail: { fineness } }) => target.id === "canvas" && fineness === "coarse" && window.coarse.push(performance.now() - window.begin));
     });
     const coarse = async act => {
       await page.evaluate(() => (window.coarse = []));

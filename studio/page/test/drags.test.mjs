@@ -12,7 +12,7 @@ const WATCHED = "let ball = (0, 1, 0)\nimage { width 640  height 360 }\ncamera {
 
 const select = async (page, label) => {
   await page.selectOption("#objects", { label });
-  await page.waitForSelector(".handle");
+  await page.waitForSelector("#handles .handle");
 };
 
 const number = (text, pattern) => Number(new RegExp(`${pattern}\\s*(-?[\\d.]+)`).exec(text)[1]);
@@ -183,9 +183,9 @@ test("a text with errors has no handles", async t => {
   await page.keyboard.press("Home");
   await page.keyboard.insertText("sphere { }\n");
   await page.waitForSelector("#stale:not([hidden])");
-  await page.waitForSelector(".handle", { state: "detached" });
+  await page.waitForSelector("#handles .handle", { state: "detached" });
   await page.keyboard.press("Control+z");
-  await page.waitForSelector(".handle");
+  await page.waitForSelector("#handles .handle");
 });
 
 test("handles at the same point are placed side by side, and each can be dragged", async t => {
@@ -193,7 +193,7 @@ test("handles at the same point are placed side by side, and each can be dragged
   const page = await open(await launch(t), await host(t, scene));
   await page.waitForFunction(() => document.querySelector("#objects").options.length > 1);
   await select(page, "Crate (box)");
-  const places = await page.locator(".handle").evaluateAll(all => all.map(it => [it.dataset.handle, it.getBoundingClientRect()]));
+  const places = await page.locator("#handles .handle").evaluateAll(all => all.map(it => [it.dataset.handle, it.getBoundingClientRect()]));
   assert.equal(places.length, 7);
   for (const [i, [, a]] of places.entries()) {
     assert.ok(a.width >= 24 && a.height >= 24);

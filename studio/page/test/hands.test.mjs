@@ -65,7 +65,7 @@ test("a click selects the clicked object of a repetition, and the cursor the fir
       await rested(page);
       assert.equal(await chosen(), String(i + 1), name);
       const [x, y] = await onPage(page, at(i));
-      const [hx, hy] = await handle(page, await page.locator(".handle").first().getAttribute("aria-label"));
+      const [hx, hy] = await handle(page, await page.locator("#handles .handle").first().getAttribute("aria-label"));
       assert.ok(Math.hypot(hx - x, hy - y) < 3, `${i}: ${hx - x} ${hy - y}`);
     }
     // The dragged object stays selected, even if a block is inserted before it.
@@ -107,9 +107,9 @@ test("a press beside a handle drags the object", async t => {
   const started = await host(t, FIGURE.replace("d      2.75", "d      5.5"));
   const page = await open(browser, started);
   await page.selectOption("#objects", { label: "Crate (box)" });
-  await page.waitForSelector(".handle");
+  await page.waitForSelector("#handles .handle");
   const box = /^box.*$/m;
-  const places = await page.locator(".handle").evaluateAll(all => all.map(it => {
+  const places = await page.locator("#handles .handle").evaluateAll(all => all.map(it => {
     const { x, y, width, height } = it.getBoundingClientRect();
     return [it.ariaLabel, x + width / 2, y + height / 2];
   }));
@@ -228,7 +228,7 @@ test("every handle moves only its object, and every tool only the camera", async
     const option = await page.locator("#objects option", { hasText: object }).getAttribute("value");
     await page.selectOption("#objects", option);
     await page.waitForSelector(`.handle[data-handle=${names[0]}][data-object="${option}"]`);
-    assert.deepEqual(await page.locator(".handle").evaluateAll(all => all.map(handle => handle.dataset.handle)), names);
+    assert.deepEqual(await page.locator("#handles .handle").evaluateAll(all => all.map(handle => handle.dataset.handle)), names);
     for (const name of names) {
       await page.focus(`.handle[data-handle=${name}]`);
       // Every handle can be moved upwards or to the right.
@@ -265,7 +265,7 @@ test("one finger drags, and two fingers zoom without changing the text", async t
   const [x, y] = await onPage(page, BALL);
   // A tap selects the object and does not move it.
   await page.touchscreen.tap(x, y);
-  await page.waitForSelector(".handle");
+  await page.waitForSelector("#handles .handle");
   assert.deepEqual(await place(), start);
   await touch("touchStart", [x, y]);
   await touch("touchStart", [x, y], [x + 40, y]);
@@ -293,12 +293,12 @@ test("a phone has tabs for picture and text, and targets of 44 pixels", async t 
   assert.ok(await page.isVisible("#stage") && await page.isHidden("#editor"));
   await page.setViewportSize({ width: 390, height: 844 });
   await page.selectOption("#objects", { label: "Crate (box)" });
-  await page.waitForSelector(".handle");
-  const targets = "header button, header summary, #tabs button, .tools select, .tools button, .tools summary, .tools label span, footer button, .handle";
+  await page.waitForSelector("#handles .handle");
+  const targets = "header button, header summary, #tabs button, .tools select, .tools button, .tools summary, .tools label span, footer button, #handles .handle, .dock-tools button";
   const measured = await page.locator(targets).evaluateAll(all => all.map(it => [it.textContent, it.getBoundingClientRect()]).filter(([, { width }]) => width > 0));
   assert.ok(measured.length > 20);
   for (const [name, { width, height }] of measured) assert.ok(width >= 43.9 && height >= 43.9, `${name}: ${width} × ${height}`);
-  const handles = await page.locator(".handle").evaluateAll(all => all.map(it => it.getBoundingClientRect()));
+  const handles = await page.locator("#handles .handle").evaluateAll(all => all.map(it => it.getBoundingClientRect()));
   for (const [i, a] of handles.entries()) for (const b of handles.slice(0, i)) assert.ok(Math.max(Math.abs(a.x - b.x), Math.abs(a.y - b.y)) >= 43.9);
   await page.tap("#tabs [data-tab=text]");
   assert.ok(await page.isHidden("#stage") && await page.isVisible("#editor"));
@@ -349,8 +349,8 @@ test("the selection stays when another program inserts text before it", async t 
     const page = await open(await launch(t), started);
     await page.waitForFunction(() => document.querySelector("#objects").options.length === 6);
     await page.selectOption("#objects", { label: selected });
-    await page.waitForSelector(".handle");
-    const shown = () => page.evaluate(() => [document.querySelector("#objects").selectedOptions[0]?.text, document.querySelector(".handle")?.ariaLabel]);
+    await page.waitForSelector("#handles .handle");
+    const shown = () => page.evaluate(() => [document.querySelector("#objects").selectedOptions[0]?.text, document.querySelector("#handles .handle")?.ariaLabel]);
     const [, label] = await shown();
     const at = selected.startsWith("box") ? 3 : 2;
     const lines = [camera, board, ...blocks, ""];

@@ -106,7 +106,7 @@ test("objects added while the text has errors get distinct positions and appear 
   for (const name of ["Sphere1", "Sphere2", "Box1", "Triangle1"]) {
     await page.locator("#objects").selectOption(await page.locator("#objects option", { hasText: name }).getAttribute("value"));
     await page.waitForSelector(`.handle[aria-label^="${name}: "]`);
-    assert.ok(await page.locator(".handle").first().isVisible(), name);
+    assert.ok(await page.locator("#handles .handle").first().isVisible(), name);
   }
 });
 
@@ -158,7 +158,7 @@ test("on a floor drags keep the height unless Shift is held, and snap unless Con
 test("a snapping handle stays near the pointer and returns to its starting point", async t => {
   const page = await open(await launch(t), await host(t));
   await page.selectOption("#objects", { label: "Crate (box)" });
-  await page.waitForSelector(".handle");
+  await page.waitForSelector("#handles .handle");
   for (const label of ["Crate: max y", "Crate: max x", "Crate: center"]) {
     const from = await handle(page, label);
     await hand(page, from, [24, -37], { back: true, steps: 24 });
@@ -238,8 +238,8 @@ test("vanishing points outside the page are arrows, and an empty layer gives a r
   await page.click("summary:text('Show')");
   for (const name of ["vanishing", "grid"]) await page.check(`input[name=${name}]`);
   await page.keyboard.press("Escape");
-  await page.waitForFunction(() => document.querySelectorAll("text.mark").length === 3);
-  const marks = await page.locator("text.mark").evaluateAll(all => all.map(it => [it.textContent, it.getBoundingClientRect().toJSON()]));
+  await page.waitForFunction(() => document.querySelectorAll("#lines text.mark").length === 3);
+  const marks = await page.locator("#lines text.mark").evaluateAll(all => all.map(it => [it.textContent, it.getBoundingClientRect().toJSON()]));
   const stage = await page.locator("#stage").boundingBox();
   for (const [label, { x, y, width, height }] of marks) {
     assert.match(label, /^[xyz] \(-?\d+, -?\d+\)$/);
@@ -256,7 +256,6 @@ test("the tools fit one row at 1280, and the projector window needs no server", 
   await page.selectOption("#objects", { label: "Ball (sphere)" });
   await page.waitForSelector("#along:not([hidden])");
   assert.ok((await page.locator(".tools").boundingBox()).height < 50);
-  assert.ok(await page.isHidden("#dock"));
   const [popup] = await Promise.all([page.waitForEvent("popup"), menu(page, "Help", "#projector")]);
   let sockets = 0;
   popup.on("websocket", () => sockets++);
@@ -295,7 +294,7 @@ test("at each window size the picture fills its space", async t => {
   const [started, browser] = [await host(t), await launch(t)];
   for (const [width, height, least] of [[1280, 800, 700], [1920, 1080, 1060], [820, 1180, 760]]) {
     const page = await open(browser, started, { viewport: { width, height } });
-    assert.ok((await page.locator("canvas").boundingBox()).width >= least, `${width}`);
+    assert.ok((await page.locator("#canvas").boundingBox()).width >= least, `${width}`);
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
     await page.context().close();
   }

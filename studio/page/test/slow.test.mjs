@@ -105,7 +105,7 @@ test("the last good picture of a text with errors is finished", async t => {
   await comparing(page);
   const expected = await decoded(page, rendered(started.folder, scene));
   // After the coarse picture has arrived, the text gets an error.
-  await page.evaluate(() => addEventListener("pinhole-frame", () => (window.isBegun = true), { once: true }));
+  await page.evaluate(() => addEventListener("pinhole-frame", ({ target }) => (window.isBegun ||= target.id === "canvas")));
   await page.click(".cm-content", { position: { x: 2, y: 5 } });
   await page.keyboard.press("Control+a");
   await page.keyboard.insertText(scene);
@@ -136,7 +136,7 @@ test("among very many objects the menu shows the selected one at once, and place
     new MutationObserver(() => window.named.push(document.querySelector("#objects").selectedOptions[0]?.text)).observe(document.querySelector("#objects"), { childList: true });
   });
   await page.mouse.click(...(await onPage(page, [640, 364])));
-  await page.waitForSelector(".handle");
+  await page.waitForSelector("#handles .handle");
   const name = await page.evaluate(() => document.querySelector("#objects").selectedOptions[0]?.text);
   assert.match(name ?? "", /^Ball\[\d+, \d+\] \(sphere\)$/);
   assert.ok(Number(/\d+/.exec(name)[0]) >= 25, `${name} is none of the first thousand`);

@@ -24,7 +24,7 @@ test("the page works within its content security policy", async t => {
   const page = await open(await launch(t), await host(t));
   await page.waitForSelector(".swatch");
   await page.selectOption("#objects", { label: "Ball (sphere)" });
-  await page.waitForSelector(".handle");
+  await page.waitForSelector("#handles .handle");
   await page.click("text=Share");
   assert.deepEqual(page.complaints, []);
 });

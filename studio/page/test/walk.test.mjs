@@ -20,7 +20,7 @@ test(`a random walk of ${STEPS} steps from ${SEED}`, async t => {
   const steps = {
     drag: async () => hand(page, await place(), way()),
     async handle() {
-      const handles = await page.locator(".handle").all();
+      const handles = await page.locator("#handles .handle").all();
       const box = handles.length === 0 ? null : await one(handles).boundingBox();
       if (box !== null) await hand(page, [box.x + box.width / 2, box.y + box.height / 2], way());
     },
