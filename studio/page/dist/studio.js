@@ -455,6 +455,7 @@ Come below an error of 1/256 with at most 64 samples per pixel. \`exact\` does n
 error < 0.00390625               // the error is below 1/256, which is 0.0039
 inspect/sampler/per_pixel <= 64  // with at most 64 samples per pixel
 inspect/sampler/method in ["regular", "random", "jittered", "n_rooks", "multi_jittered", "hammersley", "halton", "sobol"] // by a method with samples
+inspect/objects/Ball/seen/pixels = start  // of the same picture: Ball covers as many pixels as at the start
 \`\`\`
 `,start:`// Lesson 7: three objects in front of a dark sky, with random samples.
 image   { background midnightblue }

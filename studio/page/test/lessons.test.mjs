@@ -278,7 +278,7 @@ test("the static page has the lessons, and its engine judges them", { skip }, as
   // The error needs an exact picture.
   await choose(page, 7);
   await last(page);
-  await until(page, "2 of 4 hold");
+  await until(page, "3 of 5 hold");
   await andFinished(page, () => type(page, read(names[6], "solution.scn")));
   await until(page, "Solved.");
   assert.deepEqual(page.complaints, []);
