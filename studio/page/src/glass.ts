@@ -18,16 +18,13 @@ const COUNTS = [1, 4, 16, 64, 256];
 const METHODS = ["regular", "random", "jittered", "n_rooks", "multi_jittered", "hammersley",
   "halton", "sobol", "scatter"];
 /** Size of the chart, in units of its SVG, and its margins for labels. */
-const CHART = { width: 300, height: 190, left: 44, right: 78, top: 8, bottom: 32 };
+const CHART = { width: 340, height: 160, left: 50, right: 88, top: 8, bottom: 30 };
 /** Error below which the chart has no scale. It is far below what 8 bits can show. */
 const LEAST_ERROR = 1e-5;
 
 class PixelGlass {
   /** Column and row of the pixel under the glass; null if the glass is hidden. */
   private pixel: Point | null = null;
-  /** Whether the glass opens as soon as there is a picture: a layer was shown whose place it has
-   * taken. */
-  private isWanted = false;
   private data: { glass: Glass; samples: Samples } | null = null;
   private readonly section = byId("glass");
   private readonly method = byId<HTMLSelectElement>("glass-method");
@@ -42,8 +39,12 @@ class PixelGlass {
       choice.addEventListener("change", () => this.changed());
     const isOld = (layer: string) => layer === "samples" || layer === "grid";
     const layers = (remembered("layers") ?? "").split(" ");
-    this.isWanted = layers.some(isOld) || (inAddress("show") ?? "").split(",").some(isOld);
-    if (this.isWanted) remember("layers", layers.filter(it => !isOld(it)).join(" "));
+    // The glass has taken the place of two layers. If one of them was shown, the glass opens with
+    // the first picture.
+    if (layers.some(isOld) || (inAddress("show") ?? "").split(",").some(isOld)) {
+      remember("layers", layers.filter(it => !isOld(it)).join(" "));
+      picture.canvas.addEventListener("pinhole-frame", () => this.pin(), { once: true });
+    }
     byId("glass-pin").addEventListener("click", () => this.pin());
     byId("glass-hide").addEventListener("click", () => this.show(null));
     byId("glass-next").addEventListener("click", () => step(this.method, 1));
@@ -71,12 +72,7 @@ class PixelGlass {
   }
 
   /** Asks anew about the pixel, because the text or what is chosen has changed. */
-  changed(): void {
-    if (this.isWanted && !picture.isEmpty) {
-      this.isWanted = false;
-      this.pin();
-    } else if (this.pixel !== null) void this.refresh();
-  }
+  changed(): void { if (this.pixel !== null) void this.refresh(); }
 
   private readonly refresh = newestOf<void>(async () => {
     const { pixel } = this;
@@ -113,14 +109,18 @@ class PixelGlass {
     const total = samples.colors.length;
     const rows = seen.slice(0, 4).map(it => {
       const count = samples.colors.filter(color => color === it.color).length;
-      return row(it.color, it.label ?? "", percent(total === 0 ? 0 : count / total),
-        percent(it.share));
+      const label = cell(it.label ?? "");
+      label.prepend(swatch(it.color));
+      return row(label, cell(total === 0 ? "–" : percent(count / total)), cell(percent(it.share)));
     });
     const off = Math.sqrt([0, 1, 2].reduce((sum, i) =>
       sum + ((samples.mean[i] ?? 0) - (mean[i] ?? 0)) ** 2, 0) / 3);
-    byId("glass-table").replaceChildren(...rows,
-      row(samples.color, "mean of the samples", samples.color, ""),
-      row(color, "exact mean", "", color));
+    const means = [samples.color, color].map(mean => {
+      const colored = cell(mean);
+      colored.prepend(swatch(mean));
+      return colored;
+    });
+    byId("glass-table").replaceChildren(...rows, row(cell("mean"), ...means));
     const least = bound === 0 ? "" : `; the exact mean, by at most ${bound.toExponential(0)}`;
     setText(byId("glass-error"),
       `The mean of the samples is off by ${off.toPrecision(2)} of 1 in linear light${least}.`);
@@ -138,12 +138,19 @@ function step(select: HTMLSelectElement, by: number): void {
 
 const percent = (share: number) => `${(100 * share).toFixed(1)} %`;
 
-function row(color: string, ...texts: string[]): HTMLTableRowElement {
+const cell = (text: string) => create("td", "", text);
+
+function row(...cells: HTMLElement[]): HTMLTableRowElement {
   const row = create("tr");
-  const swatch = create("td", "swatch");
-  swatch.style.background = color;
-  row.append(swatch, ...texts.map(text => create("td", "", text)));
+  row.append(...cells);
   return row;
+}
+
+/** Returns a small square of the colour `color`. */
+function swatch(color: string): HTMLElement {
+  const swatch = create("span", "swatch");
+  swatch.style.background = color;
+  return swatch;
 }
 
 /** Draws the chart: errors against samples, both on logarithmic scales. */

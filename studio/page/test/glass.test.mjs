@@ -10,7 +10,7 @@ sphere Ball { center (0, 1, 0) radius 1 color olive }
 checkerboard {}
 `;
 /** A pixel at the left edge of the sphere. */
-const EDGE = [119.5, 80.5];
+const EDGE = [129.5, 85.5];
 
 const pin = async (page, at) => {
   await page.mouse.move(...(await onPage(page, at)));
@@ -24,7 +24,7 @@ test("g puts the pixel under the pointer under the glass, and takes it away", as
   await page.locator("#stage").focus();
   await pin(page, EDGE);
   await page.waitForSelector("#glass-points circle");
-  assert.equal(await page.textContent("#glass-pixel"), "119, 80");
+  assert.equal(await page.textContent("#glass-pixel"), "129, 85");
   assert.equal(await points(page), 16);
   assert.match((await rows(page)).join("\n"), /Ball\d/);
   // What stands in the table for the exact picture adds up.
@@ -34,7 +34,7 @@ test("g puts the pixel under the pointer under the glass, and takes it away", as
   await page.waitForSelector("#lines .pinned", { state: "attached" });
   await page.mouse.click(...(await onPage(page, [160, 80])));
   await page.waitForFunction(() => document.querySelector("#objects").selectedOptions[0].textContent.includes("Ball"));
-  assert.equal(await page.textContent("#glass-pixel"), "119, 80");
+  assert.equal(await page.textContent("#glass-pixel"), "129, 85");
   // Another pixel takes its place; the same one, a second time, hides the glass.
   await pin(page, [200.5, 81.5]);
   await page.waitForFunction(() => document.querySelector("#glass-pixel").textContent === "200, 81");
