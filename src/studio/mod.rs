@@ -8,9 +8,9 @@
 //! There are two hosts. The host in this module (`host`) serves the page over a WebSocket, on this
 //! machine only. `access` decides which pages are admitted, `connection_limits` limits connections
 //! without a token, and `conversation` serves one page. `scene_file` reads and saves the scene's
-//! file, which all pages share, `lesson_file` a lesson, `threaded_download` renders a picture to a file on several threads,
-//! and `draft` stores texts that are not saved. The other host is the crate `studio/engine`, which
-//! runs in the browser itself.
+//! file, which all pages share, `lesson_file` reads a teacher's lesson, `threaded_download` renders
+//! a picture to a file on several threads, and `draft` stores texts that are not saved. The other
+//! host is the crate `studio/engine`, which runs in the browser itself.
 
 #[cfg(not(target_family = "wasm"))]
 mod access;

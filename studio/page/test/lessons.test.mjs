@@ -1,5 +1,5 @@
-// Tests of lessons: their list and steps, conditions that are judged while the scene changes, links,
-// and a lesson of a teacher.
+// Tests of lessons: their list and steps, conditions that are judged while the scene changes,
+// links, and a lesson of a teacher.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
