@@ -181,12 +181,14 @@ fn the_inner_edges_of_a_box_are_edges_and_no_board() {
 #[test]
 fn colors_of_objects_do_not_change_the_share_of_the_board() {
     let balls = |colors: [&str; 2]| {
-        let [a, b] = colors;
-        let scene = format!(
-            "image {{ width 48 height 32 }} camera {{ eye (0, 1.5, 6) lookat (0, 0.5, 0) }} checkerboard {{}}
-            for i in -2 to 3 {{ sphere {{ center (0.8 * i, 0.5, 0) radius 0.5 color if i % 2 == 0 then {a} else {b} }} }}"
-        );
-        Mixture::of(&read(&scene))
+        let ball = |i: usize| {
+            let (x, color) = (0.8 * i as f64 - 2.0, colors[i % 2]);
+            format!("sphere {{ center ({x}, 0.5, 0) radius 0.5 color {color} }}")
+        };
+        let balls: String = (0..6).map(ball).collect();
+        Mixture::of(&read(&format!(
+            "image {{ width 48 height 32 }} camera {{ eye (0, 1.5, 6) lookat (0, 0.5, 0) }} checkerboard {{}} {balls}"
+        )))
     };
     let [same, different] = [["red", "red"], ["red", "blue"]].map(balls);
     assert_eq!(same, different);
