@@ -262,7 +262,7 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion
         let Scene { camera, image, .. } = &version.scene;
         let camera = viewport::camera_overlay(camera, image, &observer.projection(), pointed);
         answer["view"] = written_view(&observer);
-        answer["camera"] = written_camera(&camera, written_point, |lines| written_lines(lines));
+        answer["camera"] = written_camera(&camera, written_point, written_lines);
     }
     Ok(answer)
 }

@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3};
 use pinhole::{
     editor::viewport::{Along, Drag, Observer, PointedRay, ShownObjects, camera_overlay, overlays},
-    inspect::{CameraFacts, inspect},
+    inspect::{CameraFacts, inspect_camera},
     scene::{Camera, Scene, View},
 };
 use proptest::{
@@ -14,7 +14,7 @@ use proptest::{
 };
 
 use super::answers::dragged;
-use crate::scenes::{read, sources};
+use crate::scenes::read;
 
 const SIZE: [u32; 2] = [500, 240];
 
@@ -52,7 +52,7 @@ fn observer(scene: &Scene, from: Option<DVec3>) -> Observer {
 }
 
 fn facts(scene: &Scene) -> CameraFacts {
-    inspect(scene, &sources("").file).camera
+    inspect_camera(&scene.camera, &scene.image).0
 }
 
 /// Projects a point to an observer's picture, by the camera data that `pinhole inspect` reports.
@@ -126,7 +126,7 @@ fn is_within(point: DVec2) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(200))]
 
     /// The chosen view shows the eye, the corners of the window and the ball, from any side.
     #[test]
