@@ -1,13 +1,13 @@
 //! `grade`: grades the submissions of a class for one scene.
 //!
 //! 1. The module `class` finds the students and their files. It uses `tree`, which lists folders
-//! and zip files, `archive`, which reads zip files, `names`, which knows the naming schemes of
-//! Moodle, Gradescope and GitHub Classroom, and `glob`, which matches file names. 2. The module
-//! `submission` chooses each student's newest pictures. They are compared with the exact picture of
-//! the scene, and `graded` contains the verdicts. The module `points` computes a score from the
-//! verdict; `criteria` assigns each mistake to an object or a topic. 3. The modules `table`,
-//! `page`, `junit`, `gradescope` and `moodle` write the results, each in its format. The HTML page
-//! contains `thumbnails`.
+//!    and zip files, `archive`, which reads zip files, `names`, which knows the naming schemes of
+//!    Moodle, Gradescope and GitHub Classroom, and `glob`, which matches file names.
+//! 2. The module `submission` chooses each student's newest pictures. They are compared with the
+//!    exact picture of the scene, and `graded` contains the verdicts. The module `points` computes
+//!    a score from the verdict; `criteria` assigns each mistake to an object or a topic.
+//! 3. The modules `table`, `page`, `junit`, `gradescope` and `moodle` write the results, each in
+//!    its format. The HTML page contains `thumbnails`.
 
 mod archive;
 mod class;

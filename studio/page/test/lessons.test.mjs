@@ -153,7 +153,7 @@ test("a link opens a scene with layers on, also after a reload, and Share makes 
     assert.equal(await text(shown), scene);
     await shown.waitForSelector("#lines .horizon", { state: "attached" });
     await shown.waitForSelector("#lines .axis-z", { state: "attached" });
-    assert.deepEqual(await shown.locator("#layers input:checked").evaluateAll(all => all.map(it => it.name)), ["vanishing", "horizon"]);
+    assert.deepEqual(await shown.locator("#layers [name]:checked").evaluateAll(all => all.map(it => it.name)), ["vanishing", "horizon"]);
     await shown.reload();
   }
   // Another address in the open page changes the layers.
