@@ -18,8 +18,8 @@ box { min (-3, 0, -1) max (-1.5, 1, 0) color orange }
 checkerboard {}
 ";
 
-/// Pixels of the scene's picture: at the sphere's edge over the board, at an edge of the box, at the
-/// board alone, at the horizon, and within the sphere.
+/// Pixels of the scene's picture: at the sphere's edge over the board, at an edge of the box, at
+/// the board alone, at the horizon, and within the sphere.
 const PIXELS: [[u32; 2]; 5] = [[19, 13], [17, 12], [30, 25], [40, 12], [24, 11]];
 
 fn numbers(value: &Value) -> Vec<f64> {
