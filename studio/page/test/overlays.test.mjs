@@ -47,4 +47,3 @@ test("zooming in shows pixels as squares", async t => {
   for (let i = 0; i < 12; i++) await page.mouse.wheel(0, -150);
   await page.waitForFunction(() => document.querySelector("#canvas").style.imageRendering === "pixelated");
 });
-});
