@@ -236,7 +236,7 @@ test("the first problem is shown with its fix above the sliders, and the list ho
 test("vanishing points outside the page are arrows, and an empty layer gives a reason", async t => {
   const page = await open(await launch(t), await host(t));
   await page.click("summary:text('Show')");
-  for (const name of ["vanishing", "axis"]) await page.check(`input[name=${name}]`);
+  for (const name of ["vanishing", "near"]) await page.check(`input[name=${name}]`);
   await page.keyboard.press("Escape");
   await page.waitForFunction(() => document.querySelectorAll("#lines text.mark").length === 3);
   const marks = await page.locator("#lines text.mark").evaluateAll(all => all.map(it => [it.textContent, it.getBoundingClientRect().toJSON()]));
@@ -245,7 +245,7 @@ test("vanishing points outside the page are arrows, and an empty layer gives a r
     assert.match(label, /^[xyz] \(-?\d+, -?\d+\)$/);
     assert.ok(x >= stage.x && y >= stage.y && x + width <= stage.x + stage.width && y + height <= stage.y + stage.height, label);
   }
-  assert.match(await page.textContent("#unseen"), /pixel grid/);
+  assert.match(await page.textContent("#unseen"), /Near and far cut no checkerboard/);
   // At a smaller zoom, the point itself is visible, so no arrow points to it.
   for (let i = 0; i < 4; i++) await page.click("#zoom-out");
   assert.equal(await page.locator("path.line.axis-y[transform^=translate]").count(), 0);
