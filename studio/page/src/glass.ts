@@ -18,7 +18,7 @@ const COUNTS = [1, 4, 16, 64, 256];
 const METHODS = ["regular", "random", "jittered", "n_rooks", "multi_jittered", "hammersley",
   "halton", "sobol", "scatter"];
 /** Size of the chart, in units of its SVG, and its margins for labels. */
-const CHART = { width: 340, height: 160, left: 50, right: 88, top: 8, bottom: 30 };
+const CHART = { width: 340, height: 160, left: 50, right: 104, top: 8, bottom: 30 };
 /** Error below which the chart has no scale. It is far below what 8 bits can show. */
 const LEAST_ERROR = 1e-5;
 
@@ -122,8 +122,8 @@ class PixelGlass {
     });
     byId("glass-table").replaceChildren(...rows, row(cell("mean"), ...means));
     const least = bound === 0 ? "" : `; the exact mean, by at most ${bound.toExponential(0)}`;
-    setText(byId("glass-error"),
-      `The mean of the samples is off by ${off.toPrecision(2)} of 1 in linear light${least}.`);
+    const error = off < LEAST_ERROR ? "right" : `off by ${off.toPrecision(2)} of 1 in linear light`;
+    setText(byId("glass-error"), `The mean of the samples is ${error}${least}.`);
   }
 }
 
@@ -157,17 +157,20 @@ function swatch(color: string): HTMLElement {
 function* chart({ errors, counts }: Glass, chosen: string, count: number): Iterable<SVGElement> {
   const { width, height, left, right, top, bottom } = CHART;
   const all = errors.flatMap(it => it.typical).filter(it => it >= LEAST_ERROR);
+  const text = (at: Point, anchor: string, content: string, kind = "") => {
+    const element = createSvg("text", { x: at[0], y: at[1], "text-anchor": anchor, class: kind });
+    setText(element, content);
+    return element;
+  };
+  if (all.length === 0) {
+    return yield text([width / 2, height / 2], "middle", "Every sample is right in this pixel.");
+  }
   const high = Math.ceil(Math.log10(Math.max(0.1, ...all)));
   const low = Math.min(high - 1, Math.floor(Math.log10(Math.min(0.1, ...all))));
   const last = Math.log2(counts.at(-1) ?? 2);
   const x = (n: number) => left + (width - left - right) * Math.log2(n) / last;
   const y = (error: number) => top + (height - top - bottom)
     * Math.min(1, (high - Math.log10(Math.max(error, 1e-300))) / (high - low));
-  const text = (at: Point, anchor: string, content: string, kind = "") => {
-    const element = createSvg("text", { x: at[0], y: at[1], "text-anchor": anchor, class: kind });
-    setText(element, content);
-    return element;
-  };
   for (let power = high; power >= low; power--) {
     const at = y(10 ** power);
     yield createSvg("path", { d: `M${left} ${at}H${width - right}`, class: "scale" });
