@@ -328,7 +328,7 @@ test("a selected board is not outlined across objects in front of it", async t =
   await rested(page);
   await page.mouse.move(...(await onPage(page, [100, -30])));
   await page.waitForTimeout(300);
-  assert.equal(await page.locator(".line.selected").count(), 0);
+  assert.equal(await page.locator("#lines .line.selected").count(), 0);
   // The ball is made a comment; without it, the outline of the square is visible.
   await page.locator(".cm-line").last().click();
   await page.keyboard.type("// ", { delay: 30 });
@@ -336,7 +336,7 @@ test("a selected board is not outlined across objects in front of it", async t =
   await page.keyboard.press("Home");
   await page.keyboard.type("// ", { delay: 30 });
   await page.click(".cm-line:nth-child(2)");
-  await page.waitForSelector(".line.selected", { state: "attached", timeout: 5000 });
+  await page.waitForSelector("#lines .line.selected", { state: "attached", timeout: 5000 });
 });
 
 test("the selection stays when another program inserts text before it", async t => {
