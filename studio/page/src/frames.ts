@@ -47,7 +47,8 @@ export class Frames {
   onRest: () => void = () => {};
   /** The drag that is under way; null if there is none. */
   dragging: object | null = null;
-  /** Promise that settles when the newest text's coarse picture has arrived or failed. */
+  /** Promise that settles when the newest text's coarse picture is shown or has failed, so that
+   * what else is requested does not delay it. */
   coarse: Promise<unknown> = Promise.resolve();
 
   /** The picture that the page shows, with its request. The picture may be of an older text. */
@@ -70,14 +71,16 @@ export class Frames {
   /** Requests new pictures after a change of the text or of the server. */
   changed(): void {
     if (editor.uri === "" || connection.state !== "open") return;
-    const answer = this.ask({ pixels: COARSE_PIXELS, samples: 1 });
-    this.coarse = answer.catch(() => {});
     const { doc } = editor.view.state;
-    void this.refine({ doc, generation: ++this.generation }, answer);
+    const asked = { doc, generation: ++this.generation };
+    const answer = this.ask({ pixels: COARSE_PIXELS, samples: 1 });
+    const coarse = this.present(asked, "coarse", answer);
+    this.coarse = coarse.then(() => answer).catch(() => {});
+    void this.refine(asked, coarse);
   }
 
   private async refine(asked: Asked, coarse: Promise<Frame | null>): Promise<void> {
-    const frame = await this.present(asked, "coarse", coarse);
+    const frame = await coarse;
     if (frame === null) return;
     // Of a second view, finer pictures are requested when the drag has ended.
     if (frames.dragging !== null && this !== frames) return;

@@ -13,9 +13,9 @@ let place: Point | null = null;
 
 picture.stage.addEventListener("pointermove", event => {
   place = event.pointerType === "touch" ? null : picture.local(event);
+  if (event.buttons !== 0) return tell("");
   outside.point(place && picture.toPicture(place));
-  if (event.buttons !== 0) tell("");
-  else hoverAgain();
+  hoverAgain();
 });
 picture.stage.addEventListener("pointerleave", () => {
   place = null;
