@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Times commands of two versions of Pinhole, in turns: against.py PROGRAM COMMIT [NAME...]
 
-PROGRAM is a release build of `pinhole`. COMMIT is built in a folder of its own under
-`target/against`, unless it is the path of a program. Every command of `commands.py`, or those whose
-names contain a NAME, runs nine times in each program, in turns; the least counts, since other work
-on the machine only makes a time longer. Printed are the CPU seconds (user and system time of all
-threads) and the wall time of COMMIT's program, then PROGRAM's ratios to it, and last the CPU ratio
-of PROGRAM to a second series of its own: its distance from 1 is the error of the others."""
+PROGRAM is a release build of `pinhole`. COMMIT is a commit, which is built in its own folder under
+`target/against`, or the path of another program. With a NAME, only the commands of `commands.py`
+whose names contain it are run. Each command runs nine times with each program, in turns. The
+shortest time is used, since other work on the machine only makes a time longer.
+
+Prints the CPU seconds (user and system time of all threads) and the wall time of COMMIT's program,
+and the ratios of PROGRAM's times to them. The last column compares two series of PROGRAM itself:
+the distance of this ratio from 1 shows how exact the other ratios are."""
 
 import math
 import os
@@ -24,7 +26,7 @@ SPHERES = [10_000, 100_000, 1_000_000]
 
 
 def build(commit):
-    """Returns the release build of a commit, made in a clone of the repository."""
+    """Builds a commit in a clone of the repository. Returns the path of the release program."""
     if os.path.isfile(commit):
         return commit
     commit = subprocess.check_output(["git", "-C", commands.ROOT, "rev-parse", "--short", commit], text=True).strip()
@@ -38,7 +40,8 @@ def build(commit):
 
 
 def run(program, command):
-    """Returns CPU and wall seconds; infinite if the program does not know the command."""
+    """Returns CPU and wall seconds. If the exit status is unexpected, returns infinite times:
+    an older program may not know the command."""
     start = time.monotonic()
     with open(command.stdin, "rb") as stdin:
         quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}

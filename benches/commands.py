@@ -38,14 +38,14 @@ def sized(width, height, *sets):
 
 
 def spheres(count):
-    """Returns a scene of spheres at depths from 5 to 50, in random order, that together could cover
-    the picture one and a half times."""
+    """Returns a scene of spheres at random depths from 5 to 50. The areas of their images add up to
+    one and a half times the picture."""
     chance = random.Random(count)
     colors = ["olive", "teal", "orange", "gray", "#fa0", "#3366cc", "rgb(255, 165, 0)", "steelblue"]
     lines = ["image { width 1280  height 720 }", "camera { eye (0, 0, 0)  direction (0, 0, -1)  d 1 }"]
     lines.append("sampler { method jittered  per_pixel 4  seed 1 }")
-    # At distance 1, the window is 2 high and 16/9 times as wide. A sphere of this radius at
-    # distance 1 covers its share of 1.5 times the window.
+    # At distance 1, the window is 2 high and 16/9 times as wide. The images of `count` spheres of
+    # this radius at distance 1 have 1.5 times the area of the window.
     radius = (1.5 * 4 * 16 / 9 / (3.14159 * count)) ** 0.5
     for index in range(count):
         depth = chance.uniform(5, 50)
@@ -56,8 +56,8 @@ def spheres(count):
 
 
 def messages():
-    """Yields the messages of an editor in a short session: letters are typed, each followed by the
-    usual requests."""
+    """Yields the messages of an editor in a short session. A letter is typed and deleted again and
+    again. After each change, the editor sends its usual requests."""
     uri = "file:///figure.scn"
     text = FIGURE.read_text()
     line, column = 15, text.splitlines()[15].index("radius")
@@ -103,7 +103,7 @@ def broken(text):
 
 
 def prepare(folder, program, counts):
-    """Writes the scenes and pictures that the commands read into a folder; `program` renders the
+    """Writes the scenes and pictures that the commands read into a folder. `program` renders the
     pictures."""
     for count in counts:
         (folder / f"{count}.scn").write_text(spheres(count))
@@ -117,8 +117,8 @@ def prepare(folder, program, counts):
 
 
 def commands(folder, width, height, counts):
-    """Yields all commands, with pictures of this size. `folder` has been prepared, and gets the
-    files that they write."""
+    """Yields all commands, with pictures of this size. `folder` has been prepared by `prepare`. The
+    commands write their files into it."""
     picture, exr = folder / "picture.png", folder / "picture.exr"
     def render(name, scene, *sets, size=(width, height), out=picture, more=()):
         return Command(name, ["render", scene, "-o", out, *sized(*size, *sets), *more])
@@ -132,7 +132,8 @@ def commands(folder, width, height, counts):
     yield render("figure EXR", FIGURE, out=exr)
     yield render("figure crop", FIGURE, more=["--crop", f"{width // 4},{height // 4},{width // 2},{height // 2}"])
     yield render("figure 1x1", FIGURE, size=(1, 1))
-    # Pictures of several bands: their peak memory must not grow with their height.
+    # These pictures are so high that they are rendered in several bands. Their peak memory must not
+    # grow with their height.
     yield render("poster", FIGURE, "sampler.per_pixel=1", size=(2048, 8192))
     yield render("poster EXR", FIGURE, "sampler.per_pixel=1", size=(2048, 4096), out=exr)
     for count in counts:

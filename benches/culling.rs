@@ -146,9 +146,9 @@ fn tiny(count: u32) -> String {
 }
 
 /// Returns a scene of `count` overlapping triangles with all orientations. Each is two hundred
-/// times as long as it is wide. Many of them cross even a small part of the picture, so culling
-/// finds few objects to leave out. With the work of culling itself, rendering may then take three
-/// times as long as tracing each sample alone.
+/// times as long as it is wide. Even a small part of the picture shows many of them, so culling
+/// excludes few objects. Rendering with culling may then take three times as long as tracing each
+/// sample alone.
 fn slivers(count: u32) -> String {
     let mut text = String::from("camera { eye (0, 0, 9) lookat (0, 0, 0) }\n");
     for i in 0..count {
@@ -352,8 +352,9 @@ fn once(arguments: &[String]) {
     );
 }
 
-/// Measures both ways of tracing a scene, and prints how many times as fast culling is. The
-/// measurements alternate, so that other work on the machine slows down both ways.
+/// Measures the time to render a scene with culling, and to trace each of its samples alone. Prints
+/// the ratio of the times. The measurements alternate, so that other work on the machine slows down
+/// both.
 fn ratios(name: &str, scene: &Scene) {
     let pictures = WAYS.map(|way| picture(scene, way));
     let mut best = [f64::MAX; WAYS.len()];

@@ -89,11 +89,13 @@ fn main() {
     }
 }
 
-/// Returns sets of `count` mistakes that a renderer may make. For a `count` of 0, this is only the
-/// empty set; for 1, there is one set for each mistake. For 2, there are four sets for each mistake
-/// of an object: the second mistake is one of the camera, of the board, of another object, or of
-/// the whole picture. For 3, each mistake of an object is combined with one of the camera and one
-/// of another object.
+/// Returns combinations of `count` mistakes that a renderer may make.
+///
+/// - 0: the empty combination.
+/// - 1: each mistake alone.
+/// - 2: each mistake of an object, combined with a mistake of the camera, of the board, of another
+///   object, and of the whole picture: four combinations.
+/// - 3: each mistake of an object, combined with one of the camera and one of another object.
 fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     let objects = OF_THE_OBJECTS.iter().enumerate();
     let sets = objects.flat_map(|(index, object)| {

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """Times `watch` from a save to the picture: watch.py ROUNDS SCENE PROGRAM [ARGUMENT...]
 
-Starts `PROGRAM watch` on a copy of the scene and saves it again and again with another roll of the
-camera, in turns in place and by renaming. Prints, as minimum, median and maximum in milliseconds,
-the time from before the save until the new file is there, and the time that the program itself
-prints; then the processor time of a picture; and for comparison, `PROGRAM render` of the same
-scenes from start to exit, and of one pixel of them."""
+Starts `PROGRAM watch` on a copy of the scene and saves it again and again, each time with another
+roll of the camera. The saves alternate between writing the file in place and replacing it by
+renaming. All times are in milliseconds: minimum, median and maximum.
+
+Prints the time from the beginning of the save until the new picture is there, and the time that the
+program itself prints; then the mean processor time of a picture. For comparison, prints the time of
+`PROGRAM render` from start to exit, for the same scenes and for pictures of one pixel."""
 
 import os
 import pathlib
@@ -57,7 +59,8 @@ def main():
         wait(lambda: len(said) >= 2)
         seen = {}
         for number, text in enumerate(texts):
-            # A person does not save at the very moment when the last picture appears either.
+            # A user does not save at the very moment when the last picture appears, so a pause is
+            # made.
             time.sleep(0.2)
             by_renaming = number % 2 == 1
             before, start = picture.stat().st_ino, time.monotonic()

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
-"""Counts what commands cost, comparably from day to day: work.py PROGRAM [--write]
+"""Measures the instructions and the memory of commands: work.py PROGRAM [--write]
 
 PROGRAM is a release build of `pinhole`. Every command of `commands.py` runs under valgrind, which
-counts its instructions whatever else the machine does, and without it for its peak memory. Both are
-compared with `work.csv`: the exit status is 1 if a command takes 3 % more instructions or 10 % more
-memory than its row there, or has no row; a command that takes 3 % less is marked. A row counts for
-the versions of rustc and valgrind in it; under others it is printed and not enforced. `--write`
-writes `work.csv` anew."""
+counts its instructions; other work on the machine does not affect the count. The command also runs
+without valgrind, for its peak memory.
+
+The results are compared with the rows of `work.csv`. The exit status is 1 if a command needs 3 %
+more instructions or 10 % more memory than in its row, or if there is no row for it. A command that
+needs 3 % fewer instructions is marked. A row names versions of rustc and valgrind; with other
+versions, the comparison is printed but does not affect the exit status. `--write` replaces
+`work.csv` by the results."""
 
 import csv
 import os
@@ -24,14 +27,14 @@ TABLE = pathlib.Path(__file__).with_suffix(".csv")
 COLUMNS = ["command", "instructions", "memory_kb", "rustc", "valgrind"]
 SIZE = (160, 90)
 SPHERES = [1000, 10_000]
-# Maximum ratios of a command's instructions and peak memory to those in its row of `work.csv`;
-# above them, the command fails. Instruction counts repeat within 0.2 %. Peak memory repeats only
-# within 5 %, so the least of MEMORY_RUNS runs counts.
+# Maximum ratios of a command's instructions and peak memory to those in its row of `work.csv`.
+# Above them, the comparison fails. In repeated runs, instruction counts differ by up to 0.2 %. Peak
+# memory differs by up to 5 %, so the smallest value of MEMORY_RUNS runs is used.
 MORE_INSTRUCTIONS, MORE_MEMORY = 1.03, 1.10
 MEMORY_RUNS = 5
 ENVIRONMENT = {**os.environ, "NO_COLOR": "1"}
-# Processors that run no command at the moment. Each command has one processor for itself, so that
-# it starts the same number of threads on every machine.
+# Processors that run no command at the moment. Each command runs on one processor, so that it
+# starts the same number of threads on every machine.
 PROCESSORS = queue.SimpleQueue()
 for processor in os.sched_getaffinity(0):
     PROCESSORS.put(processor)
@@ -62,8 +65,8 @@ def measure(program, command):
 
 def peak(command, line):
     """Returns the peak resident memory of a command in kilobytes."""
-    # GNU time starts the command from a small process: started from here, the command's peak would
-    # include Python's own memory.
+    # GNU time is a small process that starts the command. If Python started the command itself, the
+    # peak would include Python's memory.
     with tempfile.NamedTemporaryFile("r") as report:
         run(command, ["/usr/bin/time", "--quiet", "-f", "%M", "-o", report.name, *line])
         return int(report.read())
@@ -74,7 +77,7 @@ def version(program):
 
 
 def measure_all(program):
-    """Returns a row for each command, in order; measures one command per processor at a time."""
+    """Returns a row for each command, in order. Each processor measures one command at a time."""
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(PROCESSORS.qsize()) as pool:
         folder = pathlib.Path(folder)
         commands.prepare(folder, program, SPHERES)
@@ -87,8 +90,8 @@ def measure_all(program):
 
 
 def compare(rows):
-    """Prints each row beside the committed one; returns the names of the commands that take too
-    much."""
+    """Prints each row with its ratios to the row in `work.csv`. Returns the commands that need too
+    much, with the reasons."""
     with open(TABLE, newline="") as file:
         known = {row["command"]: row for row in csv.DictReader(file)}
     failed = [f"{name} (is no command any more)" for name in known.keys() - {row[0] for row in rows}]

@@ -44,9 +44,9 @@ pub fn at_most(bound: f64) -> String {
     let text = format!("{bound:.1e}");
     let is_less = text.parse().is_ok_and(|read: f64| read < bound);
     match text.split_once('e') {
-        // If the rounded text is below the bound, its last digit is increased by 1. The text before
-        // the exponent is a number with one decimal, so 0.1 is added to it, and the sum is again
-        // formatted with one decimal.
+        // If the rounded text is less than `bound`, its last digit is increased by 1. The text
+        // before the exponent is a number with one decimal, so 0.1 is added to it, and the sum is
+        // again formatted with one decimal.
         Some((digits, exponent)) if is_less => {
             let next = digits.parse().map_or(bound, |digits: f64| digits + 0.1);
             let carried: f64 = format!("{next:.1}e{exponent}").parse().unwrap_or(bound);

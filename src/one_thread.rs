@@ -36,20 +36,22 @@ pub(crate) fn install<R>(
     Ok(work())
 }
 
+pub(crate) fn for_each<T, S>(
+    _: Option<NonZero<usize>>,
+    items: impl Iterator<Item = T>,
+    state: impl Fn() -> S,
+    work: impl Fn(&mut S, T),
+) -> Result<(), NoThreads> {
+    let mut state = state();
+    items.for_each(|item| work(&mut state, item));
+    Ok(())
+}
+
 /// Sequential versions of the parallel loops of rayon.
 pub mod prelude {
     use std::slice;
 
     pub trait Loop: Iterator + Sized {
-        fn par_bridge(self) -> Self {
-            self
-        }
-
-        fn for_each_init<S>(self, state: impl FnOnce() -> S, act: impl Fn(&mut S, Self::Item)) {
-            let mut state = state();
-            self.for_each(|it| act(&mut state, it));
-        }
-
         fn unzip_into_vecs<A, B>(self, a: &mut Vec<A>, b: &mut Vec<B>)
         where
             Self: Iterator<Item = (A, B)>,

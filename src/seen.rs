@@ -112,7 +112,8 @@ fn add(areas: &mut SeenAreas, object: usize, (pixels, area): (Area, f64)) {
 }
 
 /// Returns the object that is seen at the projection of an object's centre. Returns `None` if this
-/// is the object itself or the background, or if the centre is not in the picture.
+/// is the object itself or the background, if the centre is not in the picture, or if the object is
+/// a checkerboard, which has no centre.
 fn hidden_by(scene: &Scene, world: &OnceCell<World>, index: usize) -> Option<usize> {
     let middle = scene.objects[index].shape.center()?;
     let projection = Projection::new(&scene.camera, &scene.image);

@@ -200,6 +200,11 @@ impl Source {
         &self.text
     }
 
+    /// Returns the text without copying it.
+    pub fn into_text(self) -> String {
+        self.text
+    }
+
     /// Returns the text of a byte range. Returns an empty text if the range is not within the
     /// source, or not at character boundaries.
     pub fn slice(&self, range: Range<usize>) -> &str {

@@ -42,7 +42,7 @@ pub fn nearest<'c>(
 
 /// Returns the name of a value or a function that is most similar to `written`, as [`nearest`]
 /// does. If `written` has at most two letters, returns only a name that is equal except for case,
-/// since so short a name is seldom mistyped.
+/// since so short a name is seldom mistyped. Returns `None` if there is no such name.
 pub fn nearest_name<'c>(
     written: &str,
     candidates: impl IntoIterator<Item = &'c str>,
@@ -85,7 +85,8 @@ pub fn is_only_near<'c>(
     least == 0 || candidates.all(|other| other == near || slips(other) > least)
 }
 
-/// Finds the nearest candidate. This function is not generic, so that it is compiled only once.
+/// Finds the nearest candidate; `None` if no candidate is similar. This function is not generic, so
+/// that it is compiled only once.
 fn nearest_of<'c>(written: &str, candidates: &mut dyn Iterator<Item = &'c str>) -> Option<&'c str> {
     // Maximum length, in characters, of a name that is compared. A longer text is not a mistyped
     // name, and comparing it would take long.

@@ -10,7 +10,10 @@ use std::{
 };
 
 pub(crate) use rayon::prelude;
-use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+use rayon::{
+    ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder,
+    iter::{ParallelBridge, ParallelIterator},
+};
 use thiserror::Error;
 
 /// Error if the system cannot start threads.
@@ -70,10 +73,10 @@ impl Threads {
         }
     }
 
-    /// Returns the pool that was built. If building failed, for instance because too many threads
-    /// are running, returns the current threads. If the calling thread does not belong to a pool,
-    /// makes it the only thread of a new pool and returns this pool. rayon then keeps the thread in
-    /// this pool permanently.
+    /// Returns the pool that was built. Building may have failed, for instance because too many
+    /// threads are running. In that case, returns the current threads if the calling thread belongs
+    /// to a pool. Otherwise, makes the calling thread the only thread of a new pool, and returns
+    /// this pool; rayon then keeps the thread in it permanently.
     fn started(built: Result<ThreadPool, ThreadPoolBuildError>) -> Result<Self, NoThreads> {
         match built {
             Ok(pool) => Ok(Self::Started(pool)),
@@ -107,14 +110,43 @@ pub(crate) fn install<R: Send>(
     Ok(Threads::new(threads)?.install(work))
 }
 
+/// Calls `work` for each item, in any order, on `threads` threads, or on the available number if
+/// `threads` is `None`. `work` gets the state that `state` makes for each thread. A single item is
+/// handled on the calling thread, since starting others takes longer than rendering a small
+/// picture.
+///
+/// # Errors
+///
+/// Returns an error if not even the calling thread can be used.
+pub(crate) fn for_each<T: Send, S>(
+    threads: Option<NonZero<usize>>,
+    mut items: impl Iterator<Item = T> + Send,
+    state: impl Fn() -> S + Sync + Send,
+    work: impl Fn(&mut S, T) + Sync + Send,
+) -> Result<(), NoThreads> {
+    let (first, second) = (items.next(), items.next());
+    if second.is_none() {
+        first.into_iter().for_each(|only| work(&mut state(), only));
+        return Ok(());
+    }
+    let items = first.into_iter().chain(second).chain(items);
+    install(threads, || {
+        items
+            .par_bridge()
+            .for_each_init(state, |state, item| work(state, item));
+    })
+}
+
 #[cfg(test)]
 mod tests {
-    use std::io;
+    use std::{io, sync::Mutex};
 
     use super::{prelude::*, *};
+    use crate::lock::{lock, unpoisoned};
 
-    /// The first run makes the calling thread a pool of its own, so that the second run tests a
-    /// thread that already belongs to a pool.
+    /// Tries a system that cannot start threads: all work must run on the calling thread. The first
+    /// run puts the calling thread into a pool, so that the second run tests a thread that already
+    /// belongs to a pool.
     #[test]
     fn where_no_thread_can_be_started_the_calling_one_does_it() {
         for _ in 0..2 {
@@ -128,6 +160,21 @@ mod tests {
                 here.filter(|_| thread::current().id() == caller).count()
             };
             assert_eq!(threads.install(work), 1000);
+        }
+    }
+
+    #[test]
+    fn a_single_item_is_handled_by_the_calling_thread() {
+        let caller = thread::current().id();
+        for count in [0, 1, 2, 100] {
+            let handled = Mutex::new(Vec::new());
+            let handle = |(): &mut (), item| lock(&handled).push((item, thread::current().id()));
+            for_each(NonZero::new(2), 0..count, || (), handle).expect("threads can be had");
+            let mut handled = unpoisoned(handled.into_inner());
+            handled.sort_by_key(|&(item, _)| item);
+            assert!(handled.iter().map(|&(item, _)| item).eq(0..count));
+            let is_here = |&(_, thread): &(u32, _)| thread == caller;
+            assert_eq!(handled.iter().all(is_here), count <= 1, "{count}");
         }
     }
 

@@ -143,7 +143,8 @@ fn status(is_accepted: bool) -> Status {
     }
 }
 
-/// Reads a picture. Warns if its file format changes colours, as JPEG does.
+/// Decodes the picture `bytes` of the file `path`. Warns if its file format changes colours, as
+/// JPEG does. Returns an error if the picture cannot be decoded.
 fn read(path: &Path, bytes: &[u8], large: &LargeArgs) -> Result<Picture, Trouble> {
     let picture = judge::picture(bytes, large).map_err(|error| unreadable(path, &error))?;
     if let Some(warning) = picture.coding.warning() {

@@ -29,8 +29,13 @@ pub struct FramePattern {
 }
 
 impl FramePattern {
-    /// Parses the argument of `-o`. It must contain exactly one place for a number, written as `%d`
-    /// or, for example, `%03d`. A percent sign is written as `%%`.
+    /// Parses the output path of a sweep, from the argument of `-o`. The path must contain exactly
+    /// one place for the number of a picture, written as `%d` or, for example, `%03d`. A percent
+    /// sign is written as `%%`.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if there is no path, or if it has no such place or several.
     pub fn of(output: Option<&Path>) -> Result<Self, Trouble> {
         let named = output.filter(|path| !input::is_standard(path));
         let parsed = match named.map(|path| (path.to_str(), shown(path))) {

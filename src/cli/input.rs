@@ -157,6 +157,7 @@ impl SceneInput {
 
     /// Parses the scene and prints its problems. Warnings about objects outside of the picture are
     /// not printed, since such objects may be intended, for example in one frame of an animation.
+    /// Returns [`Trouble::SceneErrors`] if the scene has errors.
     pub fn scene(&self) -> Result<Scene, Trouble> {
         let mut reading = scene::read(&self.sources);
         let is_of_text = |it: &Diagnostic| it.code == "pinhole::outside_picture";
@@ -200,10 +201,10 @@ impl SceneInput {
     /// Returns what a picture file stores about the scene. `crop` is the rendered part of the
     /// picture, or `None` if the whole picture was rendered. `whole` is the area of the whole
     /// picture.
-    pub fn recipe(&self, crop: Option<Area>, whole: Area) -> Recipe {
+    pub fn into_recipe(self, crop: Option<Area>, whole: Area) -> Recipe {
         Recipe {
-            scene: self.sources.file.text().to_owned(),
             overrides: self.overrides(),
+            scene: self.sources.file.into_text(),
             crop,
             size: crop.map(|_| [whole.width, whole.height]),
         }

@@ -33,7 +33,8 @@ struct Flags {
 const GRACE: Duration = Duration::from_secs(2);
 
 impl Interrupt {
-    /// Installs a handler that records Ctrl-C. A process can have one only.
+    /// Installs a handler that records Ctrl-C. A process can have only one such handler; for a
+    /// second one, an error is returned.
     pub(super) fn listen(&self) -> Result<(), Trouble> {
         let interrupt = self.clone();
         ctrlc::set_handler(move || interrupt.press())

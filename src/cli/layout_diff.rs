@@ -94,10 +94,11 @@ fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
             let (old, new) = (before.line(), after.line());
             let [mut is_removed, mut is_added] = [old.is_some(), new.is_some()];
             if let (Some(old), Some(new)) = (old, new) {
-                // Makes one step towards the next lines that may correspond: passes a line of the
-                // text that has fewer characters, not counting white space, before this line. If
-                // the numbers are equal, passes the line that is empty, since formatting adds and
-                // removes empty lines. If both lines are empty, or neither is, passes both.
+                // Passes one line of a text, or one of each, on the way to the next lines that may
+                // correspond. If fewer characters, not counting white space, precede the line in
+                // one text than in the other, the line of that text is passed. If equally many do,
+                // an empty line is passed, since formatting adds and removes empty lines. If both
+                // lines are empty, or neither is, both are passed.
                 let is_empty = |line: &str| line.trim().is_empty();
                 let [old, new] = [
                     (before.solid_before, !is_empty(old)),

@@ -11,7 +11,7 @@ use super::{
     output, trouble,
 };
 use crate::{
-    diagnostic::{Report, visible_line},
+    diagnostic::{Diagnostic, Report, visible_line},
     lesson::{Facts, Judged, Lesson, parse, value_text},
     scene::Scene,
 };
@@ -58,16 +58,20 @@ pub fn run(LessonCommand::Check(args): &LessonCommand) -> Result<Status, Trouble
     })
 }
 
-/// Reads a lesson, and its scene, which is beside it with the ending .scn. Prints their mistakes,
-/// if they have any.
+/// Reads a lesson and its scene, which is in a file of the same name with the ending .scn. Warns of
+/// paths that are probably misspelt. If the lesson or the scene has mistakes, prints these and
+/// returns an error.
 pub fn read(path: &Path) -> Result<(Lesson, SceneInput, Scene), Trouble> {
     let own = Overrides { sets: Vec::new() };
     let text = SceneInput::read(path, &own)?.sources;
-    let lesson = parse(&text.file).map_err(|problems| {
+    let report = |problems: &[Diagnostic]| {
         let report = Report::new(&text, output::style());
-        for problem in &problems {
+        for problem in problems {
             output::to_people(&report.one(problem));
         }
+    };
+    let lesson = parse(&text.file).map_err(|problems| {
+        report(&problems);
         trouble(format!("{} is no lesson that can be judged", shown(path)))
     })?;
     let beside = path.with_extension("scn");
@@ -78,6 +82,7 @@ pub fn read(path: &Path) -> Result<(Lesson, SceneInput, Scene), Trouble> {
             "{scene}, the scene of the lesson {lesson}, has errors"
         ))
     })?;
+    report(&lesson.warnings(&Facts::new(&start, &input.sources.file)));
     Ok((lesson, input, start))
 }
 

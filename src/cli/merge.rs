@@ -119,7 +119,8 @@ impl PartFile {
         let place = film::read_exr_place(BufReader::new(file))
             .map_err(|_| io::Error::other("it is neither a PNG nor an EXR file of a part"))?;
         // A file that shows the whole picture is accepted, too: `--shard 1/1` writes such a file.
-        // Without a digest, however, the file is not from Pinhole.
+        // Pinhole stores a digest of the scene in each file that it renders, so a file without a
+        // digest is not from Pinhole.
         let Some(digest) = place.digest else {
             let message = "it is no part of a picture that Pinhole rendered";
             return Err(io::Error::other(message));

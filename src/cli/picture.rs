@@ -101,8 +101,8 @@ impl Certificate {
     }
 
     /// Returns a note for the user: the largest error bound of the pixels' means, and for how many
-    /// pixels the rounded values are proven right. `what` is the phrase for the rounding. The note
-    /// is empty if the picture was rendered with samples.
+    /// pixels the rounded values are proven right. `what` names these rounded values at the start
+    /// of a clause. The note is empty if the picture was rendered with samples.
     fn note(&self, what: &str) -> String {
         let Some((worst, [x, y])) = self.worst else {
             return String::new();
@@ -174,7 +174,8 @@ impl PathChoice {
 
 impl PictureOutput {
     /// Returns the output that the user named. If there is none, returns the PNG file beside the
-    /// scene.
+    /// scene. Returns an error if the file's extension is not that of a picture, or if the scene
+    /// comes from standard input and no output is named.
     pub fn of(scene: &Path, output: Option<&Path>) -> Result<Self, Trouble> {
         let path = match output {
             Some(path) if input::is_standard(path) => return Ok(Self::Standard),
@@ -385,7 +386,8 @@ impl std::fmt::Display for PictureOutput {
     }
 }
 
-/// Returns the format that belongs to a file's extension.
+/// Returns the format that belongs to a file's extension, or an error if it is neither `.png` nor
+/// `.exr`.
 fn format(path: &Path) -> Result<FileFormat, Trouble> {
     let name = path.to_string_lossy().to_ascii_lowercase();
     if name.ends_with(".png") {

@@ -21,7 +21,7 @@ use crate::render::Control;
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Interval between updates of the progress bar. Ten updates per second look smooth and take almost
-/// no time.
+/// no time. With a much longer interval, the bar would seem to stand still.
 const INTERVAL: Duration = Duration::from_millis(100);
 
 /// Runs `work`, which counts its progress up to `total`. Meanwhile, a bar shows the progress and

@@ -14,7 +14,7 @@ use super::{
     sweep::Sweep,
     trouble,
 };
-use crate::{area::Area, render::RenderError, scene::Scene, tracer::World};
+use crate::{area::Area, film::Recipe, render::RenderError, scene::Scene, tracer::World};
 
 /// Renders a scene and writes the picture, or the pictures of a sweep.
 pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
@@ -29,32 +29,33 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     let output = PictureOutput::of(&args.scene, args.output.as_deref())?;
     let input = SceneInput::read(&args.scene, &args.overrides)?;
     let scene = input.scene();
-    // The output is checked before rendering, which may take hours. It is checked even if the scene
-    // has errors: if the output cannot be written, too, the exit status is 2 rather than 1.
+    // Rendering may take hours, so the output is checked first. It is checked even if the scene has
+    // errors: an output that cannot be written causes the exit status 2, which takes precedence
+    // over the status 1 of a scene with errors.
     output.check(&args.scene)?;
-    render(args, &input, &scene?, &output, interrupt)?;
+    let scene = scene?;
+    let recipe = recipe(args, input, &scene)?;
+    render(args, &scene, &recipe, &output, interrupt)?;
     Ok(Status::Done)
 }
 
 /// Renders a scene and writes the picture to `output`.
 fn render(
     args: &RenderArgs,
-    input: &SceneInput,
     scene: &Scene,
+    recipe: &Recipe,
     output: &PictureOutput,
     interrupt: &Interrupt,
 ) -> Result<(), Trouble> {
     let whole = Area::whole(scene.image.width, scene.image.height);
-    let crop = crop(args, input, whole)?;
-    let part = crop.unwrap_or(whole);
+    let part = recipe.crop.unwrap_or(whole);
     let cancel = interrupt.watch();
     let started = Instant::now();
     let world = World::new_unless(scene, cancel).map_err(RenderError::from)?;
-    let recipe = input.recipe(crop, whole);
     let note = output
-        .render(scene, &world, part, &recipe, &args.scene, cancel)
+        .render(scene, &world, part, recipe, &args.scene, cancel)
         .map_err(|trouble| interrupt.or(trouble))?;
-    output::to_people(&output.note_of_length(&recipe));
+    output::to_people(&output.note_of_length(recipe));
     output::to_people(&note);
     if output::is_watched() {
         let [width, height] = [part.width, part.height];
@@ -64,6 +65,13 @@ fn render(
         ));
     }
     Ok(())
+}
+
+/// Returns from what the picture is made, and the part of it that is rendered.
+fn recipe(args: &RenderArgs, input: SceneInput, scene: &Scene) -> Result<Recipe, Trouble> {
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let crop = crop(args, &input, whole)?;
+    Ok(input.into_recipe(crop, whole))
 }
 
 /// Returns the part of the picture to render, or `None` for the whole picture.
@@ -112,10 +120,9 @@ fn render_sweep(
     for (step, output) in input.steps(sweep)?.into_iter().zip(outputs) {
         let input = input.with_set(&step.set);
         let scene = input.scene_without_warnings()?;
-        let whole = Area::whole(scene.image.width, scene.image.height);
-        let recipe = input.recipe(crop(args, &input, whole)?, whole);
+        let recipe = recipe(args, input, &scene)?;
         if !args.resume || !frames::is_rendered(&output, &recipe) {
-            render(args, &input, &scene, &output, interrupt)?;
+            render(args, &scene, &recipe, &output, interrupt)?;
         }
     }
     Ok(Status::Done)

@@ -51,7 +51,7 @@ pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
 }
 
 /// Opens the scene's file. If the user named none, makes a new scene, which will be saved in the
-/// current folder.
+/// current folder. Returns an error if the file cannot be read, or is standard input.
 fn file(args: &StudioArgs) -> Result<SceneFile, Trouble> {
     let Some(scene) = &args.scene else {
         let folder = env::current_dir()

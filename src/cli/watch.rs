@@ -80,7 +80,8 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
 /// checks take almost no time.
 const REFIT: Duration = Duration::from_millis(200);
 
-/// Returns the file to which the picture is written.
+/// Returns the file to which the picture is written. Returns an error if the scene comes from
+/// standard input, or the picture would go to standard output.
 fn output(args: &WatchArgs) -> Result<PictureOutput, Trouble> {
     if input::is_standard(&args.scene) {
         return Err(trouble(
@@ -128,7 +129,7 @@ fn render_and_write(
     screen.print(&input.report(&reading));
     let scene = reading.scene.ok_or(Trouble::SceneErrors)?;
     let whole = Area::whole(scene.image.width, scene.image.height);
-    let recipe = input.recipe(None, whole);
+    let recipe = input.into_recipe(None, whole);
     let world = World::new_unless(&scene, is_stale).map_err(RenderError::from)?;
     let (written, shown) = match screen.side(whole) {
         None => {
@@ -155,8 +156,9 @@ fn render_and_write(
     Ok(done)
 }
 
-/// Time after which coarse pictures are shown until the finished picture is rendered. A faster
-/// render needs none. The value is a guess at when a user gets impatient.
+/// Time after which a render is so slow that coarse pictures are shown until it is finished. The
+/// value is a guess at when a user gets impatient. With a shorter time, coarse pictures would flash
+/// up during fast renders.
 const PATIENCE: Duration = Duration::from_millis(200);
 
 /// Renders the scene. If this takes longer than [`PATIENCE`], another thread shows coarse pictures

@@ -46,7 +46,8 @@ pub const LONG_LINE_BYTES: usize = 160;
 /// a few characters.
 pub const MIN_COLUMNS: usize = 30;
 /// Number of columns that miette, the library that draws reports, needs for the line from the
-/// middle of a label to the label's message, as in `╰── message`.
+/// middle of a label to the label's message, as in `╰── message`. The message is wrapped to the
+/// columns that remain after this line.
 const HOOK_COLUMNS: usize = 4;
 /// Minimum width, in columns, to which a label's message is wrapped. It is used if the label stands
 /// so far to the right that less room is left. A narrower message would be hard to read. With a
@@ -126,9 +127,9 @@ impl<'s> Excerpt<'s> {
         if number == 1 {
             range.start = self.source.bom_len().min(range.end);
         }
-        // miette draws labels on consecutive lines in one frame. It is told only the number of the
-        // first line, and counts on from there. Lines that are not consecutive in the source are
-        // therefore separated by an empty line.
+        // miette draws labels on consecutive lines in one frame. For the frame, it gets only the
+        // number of the first line, and numbers the other lines one by one. Lines that are not
+        // consecutive in the source are therefore separated by an empty line.
         let apart = self.lines.last().is_some_and(|l| l.number + 1 < number);
         if apart {
             self.text.push('\n');
@@ -257,8 +258,8 @@ fn shown_pieces(
         let from = source.floor_char_boundary(end.saturating_sub(around).max(line.start));
         let to = source.floor_char_boundary((end + around).min(line.end));
         match pieces.last_mut() {
-            // An ellipsis `…`, which is three bytes long, stands between two parts. It would not be
-            // shorter than a gap of at most three bytes, so parts with such a gap are joined.
+            // An ellipsis `…` stands between two parts. It has three bytes, so in place of a gap of
+            // at most three bytes it would save nothing. Parts with such a gap are joined.
             Some(last) if from <= last.end + 3 => last.end = last.end.max(to),
             _ => pieces.push(from..to),
         }

@@ -97,7 +97,8 @@ impl<'s> Analysis<'s> {
     }
 
     /// Returns the word, number or sign at the offset `at`. If two tokens touch at `at`, a word or
-    /// a number is preferred to a sign. Otherwise the later token is returned.
+    /// a number is preferred to a sign. Otherwise the later token is returned. Returns `None` if no
+    /// token touches `at`.
     pub(super) fn token_at(&self, at: usize) -> Option<RoleToken> {
         let index = self.tokens().partition_point(|token| token.span.end < at);
         let touching = self.tokens().iter().skip(index);
@@ -173,12 +174,14 @@ impl<'a, 's> Path<'a, 's> {
         path
     }
 
-    /// Returns the language's description of the path's block: its kind and its fields.
+    /// Returns the language's description of the path's block: its kind and its fields. Returns
+    /// `None` if the path contains no block, or one of an unknown kind.
     pub fn row(&self) -> Option<&'static schema::BlockRow> {
         schema::block(self.block?.kind?.text)
     }
 
-    /// Returns the language's description of the path's field, e.g. its type.
+    /// Returns the language's description of the path's field, e.g. its type. Returns `None` if the
+    /// path contains no field, or an unknown one.
     pub fn field_row(&self) -> Option<&'static schema::FieldRow> {
         self.row()?.field(self.field?.name.text)
     }

@@ -122,7 +122,8 @@ fn touched(
 }
 
 /// Parses the text with the made-up name [`CURSOR`] in place of `word`. Calls `ask` with the path
-/// to this name in the syntax tree, and returns its result.
+/// to this name in the syntax tree, and returns its result. Returns `None` if `word` is not in the
+/// text.
 fn with_cursor<T>(
     analysis: &Analysis<'_>,
     word: Span,
@@ -242,8 +243,8 @@ fn expected_in(block: &Block<'_>, at: usize) -> Option<Expected> {
     is_inside.then_some(Expected::Field)
 }
 
-/// Returns the type that the innermost part of a value should have. `takes` is the type that the
-/// whole value should have.
+/// Returns the type that the innermost part of a value should have, or `None` if any type may be
+/// right. `takes` is the type that the whole value should have.
 fn wanted(path: &Path<'_, '_>, takes: Option<Type>) -> Option<Type> {
     let mut wanted = takes;
     for (outer, inner) in path.values.iter().zip(path.values.iter().skip(1)) {

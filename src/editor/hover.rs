@@ -31,6 +31,7 @@ pub struct Hover {
 
 /// Returns the description of the word at the offset `at`. If a problem is reported at `at`, the
 /// problem's message precedes the description, and a longer explanation of the problem follows it.
+/// Returns `None` if there is neither a description nor a problem.
 pub fn hover(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     let meaning = meaning(analysis, at);
     let Some((span, problem)) = mistake(analysis, at) else {
@@ -54,7 +55,7 @@ pub fn hover(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
 }
 
 /// Returns the first problem whose first label contains the offset `at`, together with the span of
-/// this label.
+/// this label. Returns `None` if there is no such problem.
 fn mistake<'a>(analysis: &'a Analysis<'_>, at: usize) -> Option<(Span, &'a Diagnostic)> {
     analysis.diagnostics().iter().find_map(|diagnostic| {
         let span = diagnostic.labels.first()?.span;
@@ -147,6 +148,7 @@ fn kind(analysis: &Analysis<'_>, row: &BlockRow) -> String {
 }
 
 /// Describes the camera's axes, field of view and vanishing points, as `pinhole inspect` does.
+/// Returns `None` if the camera or the image has errors.
 fn camera(analysis: &Analysis<'_>) -> Option<String> {
     let parts = &analysis.model.parts;
     let (camera, points) = inspect::inspect_camera(parts.camera.as_ref()?, parts.image.as_ref()?);
@@ -154,7 +156,8 @@ fn camera(analysis: &Analysis<'_>) -> Option<String> {
     Some(format!("```text\n{summary}```"))
 }
 
-/// Describes the object whose name is at the end of `path`, as `pinhole inspect` does.
+/// Describes the object whose name is at the end of `path`, as `pinhole inspect` does. Returns
+/// `None` if the path contains no block with a name.
 fn object(analysis: &Analysis<'_>, path: &Path<'_, '_>) -> Option<String> {
     let block = path.block?;
     let (kind, name) = (block.kind?.text, block.name?.text);
@@ -200,7 +203,8 @@ fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
     Some(computed.filter(|_| is_part).unwrap_or(around.len()))
 }
 
-/// Describes the value at the end of `path`, and its result.
+/// Describes the value at the end of `path`, and its result. Returns `None` if the value has no
+/// description, as a number within a vector.
 fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: RoleToken) -> Option<Hover> {
     let depth = depth_of_meaning(path)?;
     let value = *path.values.get(depth)?;

@@ -30,7 +30,7 @@ enum Namespace {
 }
 
 /// Returns the span of the name at the place where it is defined. The offset `at` is in the
-/// definition or in a use of the name.
+/// definition or in a use of the name. Returns `None` if the text does not define the name.
 pub fn definition(analysis: &Analysis<'_>, at: usize) -> Option<Span> {
     let mut occurrences = occurrences(analysis, at).into_iter();
     let first = occurrences.find(|occurrence| occurrence.is_definition);

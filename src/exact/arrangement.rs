@@ -24,21 +24,20 @@ use super::{
 /// sides of 2⁻²³ pixels, about 10⁹ unit roundoffs.
 const MIN_AREA: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// Factor k of the area limit k·n·e, in square pixels. Here n is the number of vertices of a cell
-/// (a polygon between lines), and e is the error of the values of a line's form a·x + b·y + c. If
-/// the cell's area exceeds the limit, the cell's centre is certainly on the correct side of the
-/// line.
+/// Factor k of the area limit k·n·e, in square pixels, above which a cell's centre is certainly on
+/// the correct side of a line. A cell is a polygon between lines. It has n vertices, and e is the
+/// maximum error of a value of the line's form a·x + b·y + c.
 ///
 /// Derivation: the form has the same sign at all vertices, and its value at the centre is the mean
-/// of those at the vertices. If the centre may be on the wrong side, the absolute value there is at
-/// most e, so those at the vertices are at most n·e. All vertices are then within 2n·e of the line,
-/// because the larger of |a| and |b| is at least 1/2. The cell is at most √2 long, so that its area
-/// is at most 2·√2·n·e, and 2·√2 < 3.
+/// of its values at the vertices. If the centre may be on the wrong side, the absolute value there
+/// is at most e, so the absolute values at the vertices are at most n·e. All vertices are then
+/// within 2n·e of the line, because the larger of |a| and |b| is at least 1/2. The cell is at most
+/// √2 long, so that its area is at most 2·√2·n·e, and 2·√2 < 3.
 const MAX_AREA_PER_HEIGHT: f64 = 3.0;
 
 /// Maximum rounding error of the form a·x + b·y + c of a line at a vertex. At a smaller absolute
-/// value, the sign of the form is uncertain. The form has four roundings of terms that are at most
-/// 2, because the larger of |a| and |b| is about 1.
+/// value, the sign of the form is uncertain. The form is computed with four roundings of terms that
+/// are at most 2, because the larger of |a| and |b| is about 1.
 const ROUNDING: f64 = 8.0 * f64::UNIT;
 
 /// Returns the fraction of a sub-pixel's area that shows each colour. `lines` cut the sub-pixel

@@ -118,8 +118,8 @@ pub fn curves(
         }
         ControlFlow::Continue(())
     };
-    // Silhouettes come before pairs. So the search stops early if there are very many objects,
-    // because their silhouettes alone exceed `max_curves`.
+    // Silhouettes are computed before the curves of pairs. If there are very many objects, their
+    // silhouettes alone exceed `max_curves`, so the search stops early.
     let outlines = boundaries.outlines(&mut take);
     if outlines.is_break() || boundaries.pairs(&mut take).is_break() {
         return false;
@@ -215,8 +215,8 @@ impl<'a, T: Precision> Boundaries<'a, T> {
 
     /// Appends to `out` the boundary curves of `source` that may pass through the sub-pixel.
     /// Returns `false` if two surfaces of the source have no intersection curve in the precision
-    /// `T`. They are then equal planes or concentric spheres, or differ from these by no more than
-    /// rounding errors.
+    /// `T`. Two such surfaces are equal planes or concentric spheres, or would be without rounding
+    /// errors.
     fn push(&self, source: BoundarySource, out: &mut Vec<Boundary>) -> bool {
         let mut push = |curve: Boundary| {
             if curve.may_cross_pixel() {

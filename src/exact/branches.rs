@@ -25,8 +25,8 @@ const ARC_TOLERANCE: f64 = 32.0 * f64::UNIT;
 /// vertical, because its x changes by less than eight unit roundoffs across the pixel.
 const MAX_SLOPE: f64 = (1u64 << 50) as f64;
 
-/// Distance from the pixel beyond which a branch of a conic (one of its two functions y(x)) is
-/// ignored, in units of the branch's largest |y|, or in pixels if this |y| is below 1. The value is
+/// Relative distance from the pixel beyond which a branch of a conic (one of its two functions
+/// y(x)) is ignored. The unit is the branch's largest |y|, but at least one pixel. The value is
 /// millions of times the rounding errors of y, so that no branch inside the pixel is ignored.
 const OUTSIDE_MARGIN: f64 = 1.0 / (1u64 << 30) as f64;
 
@@ -66,10 +66,10 @@ pub struct ConicGraph {
 #[derive(Debug)]
 pub struct ConicSpan<'a> {
     graph: &'a ConicGraph,
-    /// Values of x at the left end, in the middle and at the right end.
+    /// Values of x at the left end, in the middle and at the right end of the range.
     x: [f64; 3],
     /// Values of √Δ in the formula y = (−b ± √Δ)/C ([`ConicGraph`]), at the left end, in the middle
-    /// and at the right end.
+    /// and at the right end of the range of x.
     roots: [f64; 3],
 }
 
@@ -143,8 +143,8 @@ impl ConicGraph {
         let minus = b.times(&at).plus(e).negated().hi;
         // In exact arithmetic, (−b ± √Δ)/C and g/(−b ∓ √Δ) give the same y (`ConicGraph`). The
         // formula in which nothing cancels is used. If the computed Δ is 0, nothing cancels in
-        // either. The first is then used, because the exact Δ may be slightly negative (x is
-        // rounded at the end of a branch), so the second would be wrong.
+        // either formula. The exact Δ may then be slightly negative, because x is rounded at the
+        // end of a branch. Only the first formula is then accurate: it gives −b/C.
         if minus * side >= 0.0 || root == 0.0 {
             (minus + root) / c.hi
         } else {
@@ -218,7 +218,7 @@ impl<'a> ConicSpan<'a> {
             }
             // A branch may be so flat that rounding errors prevent the computation of an arc. It is
             // treated as straight if the distance between its middle and the chord is at most the
-            // rounding error `flat`. Each y has six roundings, and the mean of two y adds two.
+            // rounding error `flat`: six roundings of each y, and two of the mean of two y.
             None => {
                 let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
                 (sagitta.abs() <= flat).then_some(Section {
@@ -257,8 +257,8 @@ impl<'a> ConicSpan<'a> {
             weight: w2.sqrt(),
         };
         // Minimum weight of an arc, and the reciprocal of the maximum. For a circle, the weight is
-        // the cosine of half the arc's turn, so less weight means a turn of more than 120°. An arc
-        // beyond these limits is rejected, and the caller halves it.
+        // the cosine of half the arc's turn, so a weight below 1/2 means a turn of more than 120°.
+        // An arc beyond these limits is rejected, and the caller halves it.
         const MIN_WEIGHT: f64 = 0.5;
         let turns_little = arc.weight > MIN_WEIGHT && arc.weight < 1.0 / MIN_WEIGHT;
         (control.x >= 0.0 && control.x <= end.x - start.x && turns_little).then_some((arc, off))
@@ -290,17 +290,17 @@ impl Tangents {
         // The area between arc and chord is part of the triangle of the chord and the two tangents.
         // It has an error from the tangents' directions and one from the arc's weight.
         //
-        // Directions: let κ − 1 be the sum of the absolute values of the terms of the conic's
-        // gradient, divided by its length. The gradient has a relative error of κ roundings, so a
-        // tangent's direction has an error of κ roundings, in radians. If a side of length l turns
-        // by a small angle φ, the triangle's area changes by at most l²·φ/2. The area between arc
-        // and chord changes no more.
+        // Directions: let κ be 1 plus the sum of the absolute values of the terms of the conic's
+        // gradient, divided by the gradient's length. The gradient has a relative error of κ
+        // roundings, so a tangent's direction has an error of κ roundings, in radians. If a side of
+        // length l turns by a small angle φ, the triangle's area changes by at most l²·φ/2. The
+        // area between arc and chord changes no more.
         //
         // Weight: its square is the quotient of two values of the conic's quadratic part Q. Each
-        // has two errors: the roundings of its terms, and the error of its argument, a vector. The
-        // area between arc and chord grows no faster than the weight. An error of √Δ (`ConicGraph`)
-        // is not included: it moves points and tangents together, like an error of the conic
-        // itself.
+        // value of Q has two errors: the roundings of its terms, and the error of its argument, a
+        // vector. The area between arc and chord grows no faster than the weight. An error of √Δ
+        // (`ConicGraph`) is not included: it moves points and tangents together, like an error of
+        // the conic itself.
         let [a, b, c, d, ..] = factors;
         let product = |[x, y]: &[T; 2], [z, w]: &[T; 2]| x.times(z).plus(&y.times(w));
         let length = |[x, y]: &[T; 2]| libm::hypot(x.to_f64(), y.to_f64());
@@ -433,12 +433,12 @@ impl Section {
     /// and how far the two are apart in y. Returns `None` unless both curves are arcs that bulge to
     /// the same side. The bounds are tight if the arcs are nearly parallel or nearly coincide.
     fn parallel_bounds(&self, other: &Self) -> Option<[f64; 2]> {
-        // Compares points of the two arcs that have the same curve parameter. Heights are measured
-        // in y from the direction of this arc's chord. If the weights are equal, a point of each
-        // arc is the same weighted mean of that arc's three control points. The heights then differ
-        // at most as much as those of two control points. Unequal weights move a point by at most
-        // their difference times the length of a side of the control polygon. A difference in x
-        // changes y by at most its product with the steepest slope.
+        // Compares points of the two arcs with the same curve parameter. The height of a vector is
+        // its y minus that of the vector along this arc's chord with the same x. If the weights are
+        // equal, a point is the same weighted mean of the control points in each arc. The height
+        // between the points is then at most that between two control points. Unequal weights move
+        // a point by at most their difference times the length of a side of the control polygon. A
+        // difference in x changes y by at most its product with the steepest slope.
         //
         // Rounding errors move a point by less than the sum of two terms. The first is eight times
         // the error of the arc's area, divided by the arc's width. The second is the rounding error

@@ -9,7 +9,7 @@
 use glam::DVec2;
 
 /// Corners of the pixel, or of a sub-pixel in its own coordinates, where the middle is (0, 0) and
-/// the side is 1. They go around the pixel, from (−½, −½) along the x axis first.
+/// the side is 1. They are in order around the pixel, from (−½, −½) first along the x axis.
 pub(super) const PIXEL: [DVec2; 4] = [
     DVec2::new(-0.5, -0.5),
     DVec2::new(0.5, -0.5),

@@ -67,9 +67,9 @@ impl Arc {
         BoundedSum {
             value: area,
             // The area is half the difference of `products`, times `share`, the share of the
-            // triangle that the segment covers. `share` has up to ten roundings. At |1 − w²| =
-            // `NEAR_PARABOLA`, the difference θ − sin θ·cos θ in `share` is only a quarter of θ, so
-            // that the roundings of its two terms are four times as large, relative to the
+            // triangle that the segment covers. `share` is computed with up to ten roundings. At |1
+            // − w²| = `NEAR_PARABOLA`, the difference θ − sin θ·cos θ in `share` is only a quarter
+            // of θ, so that the roundings of its two terms are four times as large, relative to the
             // difference. In a flat triangle, the two products are nearly equal. Their own
             // roundings, three each, may then exceed those of their difference.
             bound: UNIT * (48.0 * area + 2.0 * (products[0].abs() + products[1].abs()) * share),
@@ -125,7 +125,7 @@ fn triangle_share(w: f64) -> f64 {
 ///
 /// (θ − sin θ·cos θ)/sin³θ = Σ 2/(2k + 3)·C(2k, k)/4^k·z^k.
 ///
-/// It follows from the integral of 2x²/√(1 − x²).
+/// The series follows from the integral of 2x²/√(1 − x²).
 fn series(z: f64) -> f64 {
     const TERMS: usize = 34;
     const COEFFICIENTS: [f64; TERMS] = {
@@ -159,7 +159,7 @@ impl Homography {
         // A piece whose segment is smaller than `neglected` is replaced by its chord. If an arc
         // with a segment of area A is cut into n pieces, each piece has a segment of A/n³, and all
         // pieces together have A/n². If n = √(A/t), this total is the tolerance t, and a piece's
-        // segment is t^(3/2)/√A. So this is the value of `neglected`.
+        // segment is t^(3/2)/√A, the value of `neglected`.
         if let Some(sign) = self.square_of(arc) {
             return over_one_square(segment, sign);
         }
@@ -195,8 +195,8 @@ impl Homography {
         }
         let halves = [arc.between(0.0, 0.5), arc.between(0.5, 1.0)];
         let areas = [0, 1].map(|i| halves[i].bounded_area());
-        // The comparison fails if numbers are too large or too small to represent the arc, which is
-        // then not halved.
+        // If numbers are too large or too small to represent the arc, the sum of the halves' areas
+        // is not below the limit, or is NaN. The arc is then not halved.
         let is_halved = areas[0].value + areas[1].value < MAX_HALVES_SHARE * area;
         if !is_halved {
             chords.sum.bound += if area.is_nan() { 1.0 } else { area };
@@ -294,7 +294,8 @@ struct Chords {
     neglected: f64,
 }
 
-/// Returns the roots between 0 and 1 of f0·(1 − t)² + f1·t·(1 − t) + f2·t².
+/// Returns the roots between 0 and 1 of f0·(1 − t)² + f1·t·(1 − t) + f2·t². Each entry is `None` if
+/// there is no such root.
 fn roots(f0: f64, f1: f64, f2: f64) -> [Option<f64>; 2] {
     // Without scaling, the products underflow if the squares of the board are extremely large,
     // because f0, f1 and f2 are then tiny.
@@ -304,8 +305,8 @@ fn roots(f0: f64, f1: f64, f2: f64) -> [Option<f64>; 2] {
     if discriminant < 0.0 {
         return [None, None];
     }
-    // With r = t/(1 − t) the polynomial is proportional to f2·r² + f1·r + f0, and t = r/(1 + r).
-    // Neither root is computed as a difference of nearly equal numbers.
+    // The polynomial is proportional to f2·r² + f1·r + f0, where r = t/(1 − t) and so t = r/(1 +
+    // r). Neither root is computed as a difference of nearly equal numbers.
     let q = -0.5 * (f1 + discriminant.sqrt().copysign(f1));
     [(q, f2), (f0, q)].map(|(above, below)| {
         let t = above / (above + below);

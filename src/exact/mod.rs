@@ -34,12 +34,12 @@ mod by_key;
 mod checker;
 mod clip;
 mod conic_segment;
+mod means;
 mod part_pixels;
 mod region;
 mod slabs;
 
 use std::{
-    array,
     collections::BinaryHeap,
     ops::ControlFlow,
     sync::atomic::{AtomicBool, Ordering::Relaxed},
@@ -61,8 +61,9 @@ use self::{
         BoundedSum, UNIT,
         board_pixels::{BoardBatches, BoardPixel},
     },
+    means::rounding,
     part_pixels::PartPixels,
-    region::{Regions, Shares},
+    region::{LocalBoard, Region, Regions, Shares},
 };
 
 /// Default of the requested error bound: the fraction of a pixel's area that may have a wrong
@@ -76,7 +77,7 @@ const DEFAULT_TOLERANCE: f64 = 9e-10;
 const MAX_CURVES: usize = 12;
 /// Number by which the maximum number of curves in a square part of a pixel grows with each
 /// quartering. Curves that still pass through the same small part are unlikely to be separated in
-/// smaller ones, so further quartering hardly helps. Measured: with 1, a heap of objects takes two
+/// smaller parts, so further quartering hardly helps. Measured: with 1, a heap of objects takes two
 /// thirds of the time; with 16, it takes four times as long.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// Maximum number of times per pixel that an already computed part of the pixel is quartered to
@@ -250,11 +251,14 @@ impl<'a, const N: usize> Integrator<'a, N> {
             ControlFlow::Continue(())
         });
         batches.finish(&mut |pixel, sum| self.set(pixel, sum, &mut film, &mut deferred));
-        for BoardPixel { x, y, candidate } in deferred {
+        for board_pixel @ BoardPixel { x, y, candidate } in deferred {
             if is_over() {
                 break;
             }
-            film.set(x, y, self.pixel(x, y, &[candidate], &mut curves, cancel));
+            let pixel = self
+                .board_mean(&board_pixel, self.board_sum(&board_pixel, cancel))
+                .unwrap_or_else(|| self.pixel(x, y, &[candidate], &mut curves, cancel));
+            film.set(x, y, pixel);
         }
         (flow.is_continue() && !is_over()).then_some(film.pixels)
     }
@@ -382,54 +386,41 @@ impl<'a, const N: usize> Integrator<'a, N> {
         shares
     }
 
-    /// Moves the mean of `pixel` to the middle of the range in which the true mean may lie, with
-    /// half the range's width as the bound. The range is the mean plus or minus its bound, limited
-    /// to the values of the colours that may be seen in the pixel.
-    fn center_in_range(
-        &self,
-        pixel: &ExactPixel<N>,
-        candidates: &[VisibilityCandidate],
-    ) -> ExactPixel<N> {
-        let is_covered = candidates.iter().any(|candidate| candidate.is_whole);
-        let background = (!is_covered).then(|| self.world.background());
-        let slots = candidates
-            .iter()
-            .flat_map(|candidate| self.world.slots(candidate.object));
-        let (mut low, mut high) = ([f64::INFINITY; N], [f64::NEG_INFINITY; N]);
-        for slot in slots.chain(background) {
-            let color = self.colors[slot];
-            low = array::from_fn(|i| low[i].min(color[i]));
-            high = array::from_fn(|i| high[i].max(color[i]));
-        }
-        let ExactPixel { mean, bound } = *pixel;
-        let least: [f64; N] = array::from_fn(|i| (mean[i] - bound).max(low[i]));
-        let greatest: [f64; N] = array::from_fn(|i| (mean[i] + bound).min(high[i]));
-        let widths = (0..N).map(|i| greatest[i] - least[i]);
-        ExactPixel {
-            mean: array::from_fn(|i| least[i].midpoint(greatest[i])),
-            // The ends of the range are at most 1. Each has two roundings, so four are added.
-            bound: 0.5 * widths.fold(0.0, f64::max) + 4.0 * UNIT,
-        }
-    }
-
     /// Sets a checkerboard pixel in `film` from `sum`, the integral of the board's sign. Appends
     /// the pixel to `deferred` instead if `sum` is `None` or its bound exceeds the tolerance.
     fn set(
         &self,
-        pixel: BoardPixel,
+        board_pixel: BoardPixel,
         sum: Option<BoundedSum>,
         film: &mut PartPixels<N>,
         deferred: &mut Vec<BoardPixel>,
     ) {
-        // `roundings` bounds the rounding errors of the first colour's share and of the mean.
-        let roundings = UNIT + rounding(2);
-        let half = sum.map(|BoundedSum { value, bound }| (0.5 * value, 0.5 * bound + roundings));
-        let Some((half, bound)) = half.filter(|(_, bound)| *bound <= self.tolerance) else {
-            return deferred.push(pixel);
-        };
+        match self.board_mean(&board_pixel, sum) {
+            Some(pixel) => film.set(board_pixel.x, board_pixel.y, pixel),
+            None => deferred.push(board_pixel),
+        }
+    }
+
+    /// Integrates the board's sign over a pixel that shows only a checkerboard.
+    fn board_sum(&self, pixel: &BoardPixel, cancel: &AtomicBool) -> Option<BoundedSum> {
+        let sub_pixel = SubPixel::pixel(pixel.x, pixel.y);
+        let board = LocalBoard::new(self.world, pixel.candidate.object, sub_pixel)?;
+        let budget = PixelBudget::new(self.tolerance, cancel);
+        budget.charge(PIECE_WORK);
+        let sum = board.sum(&Region::PIXEL, &budget);
+        self.work.add(budget.spent() as u64);
+        Some(sum)
+    }
+
+    /// Returns the mean of a pixel that shows only a checkerboard from `sum`, the integral of the
+    /// board's sign. Returns `None` if `sum` is `None` or its bound exceeds the tolerance.
+    fn board_mean(&self, pixel: &BoardPixel, sum: Option<BoundedSum>) -> Option<ExactPixel<N>> {
+        let BoundedSum { value, bound } = sum?;
+        // The bound includes the rounding errors of the first colour's share and of the mean.
+        let (half, bound) = (0.5 * value, 0.5 * bound + UNIT + rounding(2));
         let [first, second] = self.world.slots(pixel.candidate.object);
-        let shares = [(first, 0.5 + half), (second, 0.5 - half)];
-        film.set(pixel.x, pixel.y, self.mean(&shares, bound));
+        (bound <= self.tolerance)
+            .then(|| self.mean(&[(first, 0.5 + half), (second, 0.5 - half)], bound))
     }
 
     /// Computes the colours' shares in a part of a pixel. If too many curves pass through it or the
@@ -470,31 +461,5 @@ impl<'a, const N: usize> Integrator<'a, N> {
             shares,
             state,
         }
-    }
-
-    fn mean(&self, by_slot: &[(usize, f64)], bound: f64) -> ExactPixel<N> {
-        let mut mean = [0.0; N];
-        match by_slot {
-            [(slot, _)] => mean = self.colors[*slot],
-            by_slot => {
-                let total: f64 = by_slot.iter().map(|(_, share)| share).sum();
-                for (slot, share) in by_slot {
-                    for (sum, channel) in mean.iter_mut().zip(self.colors[*slot]) {
-                        *sum += share * channel;
-                    }
-                }
-                mean = mean.map(|sum| (sum / total).clamp(0.0, 1.0));
-            }
-        }
-        ExactPixel { mean, bound }
-    }
-}
-
-/// Returns the maximum rounding error of a mean of `colors` colours. Two sums have `colors`
-/// roundings each; the products and the quotient have one each. A single colour has none.
-fn rounding(colors: usize) -> f64 {
-    match colors {
-        0..=1 => 0.0,
-        _ => (2 * colors + 2) as f64 * UNIT,
     }
 }

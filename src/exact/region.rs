@@ -18,7 +18,8 @@ use crate::{
 
 use super::{
     budget::PixelBudget,
-    checker::{Homography, size},
+    checker::{BoundedSum, Homography, size},
+    clip::PIXEL,
     conic_segment::Arc,
 };
 
@@ -81,6 +82,16 @@ pub struct Region<'a> {
     pub inside: DVec2,
 }
 
+impl Region<'static> {
+    /// The whole sub-pixel.
+    pub const PIXEL: Self = Self {
+        polygon: &PIXEL,
+        arcs: &[],
+        area: 1.0,
+        inside: DVec2::ZERO,
+    };
+}
+
 impl<'a> Regions<'a> {
     /// Starts the sum of the colours' shares for a sub-pixel. `candidates` are the objects that may
     /// be seen in it.
@@ -100,8 +111,8 @@ impl<'a> Regions<'a> {
         }
     }
 
-    /// Adds the area of a region, which no boundary may cross, to that of the colour or colours
-    /// seen in it.
+    /// Adds the area of a region to the area of the colour or colours seen in it. No boundary may
+    /// cross the region.
     pub fn add(&mut self, region: &Region) {
         let Some(object) = self.seen(region) else {
             return self.shares.add(self.world.background(), region.area);
@@ -115,20 +126,11 @@ impl<'a> Regions<'a> {
             self.add_doubtful_area(region.area);
             return self.shares.add(first, region.area);
         };
-        let local_board = &self.boards[at].1;
-        let mut sum = local_board.board.over(region.polygon, self.budget);
-        for (bulge, arc) in region.arcs {
-            let segment = local_board.board.over_segment(arc, self.budget);
-            sum.value += bulge * segment.value;
-            sum.bound += segment.bound;
-        }
-        let half = if local_board.odd { -0.5 } else { 0.5 } * sum.value;
-        // `sum.bound` assumes that each factor of the board's forms has an error of one rounding.
-        // `relative_error` may be many times as large, so the bound is multiplied by one plus the
-        // ratio of the two. A share lies between 0 and the region's area, so its error is at most
-        // the larger of the two colours' shares.
-        let bound = 0.5 * sum.bound * (1.0 + local_board.relative_error / f64::UNIT);
-        let bound = bound.min(0.5 * region.area + half.abs());
+        let sum = self.boards[at].1.sum(region, self.budget);
+        let half = 0.5 * sum.value;
+        // A share lies between 0 and the region's area, so its error is at most the larger of the
+        // two colours' shares.
+        let bound = (0.5 * sum.bound).min(0.5 * region.area + half.abs());
         self.shares.add(first, 0.5 * region.area + half);
         self.shares.add(second, 0.5 * region.area - half);
         self.shares.bound += bound;
@@ -179,8 +181,8 @@ impl<'a> Regions<'a> {
         let total: f64 = shares.by_slot.iter().map(|(_, share)| share).sum();
         shares.bound += (1.0 - total).abs();
         if !(shares.bound.is_finite() && total > 0.0 && total < 2.0) {
-            // Only an overflow of intermediate results can cause such a bound or total. The shares
-            // are then meaningless.
+            // Only an overflow of intermediate results can make the bound infinite or NaN, or the
+            // total far from 1. The shares are then meaningless.
             return self.unknown();
         }
         // The bound is limited to 1, because a channel of the pixel's mean colour cannot have a
@@ -225,6 +227,24 @@ impl LocalBoard {
             return Some(local_board);
         }
         Self::in_precision::<Big>(world, object, sub_pixel)
+    }
+
+    /// Integrates the board's sign over a region that shows only this board: the area of the first
+    /// colour minus that of the second.
+    pub fn sum(&self, region: &Region, budget: &PixelBudget) -> BoundedSum {
+        let mut sum = self.board.over(region.polygon, budget);
+        for (bulge, arc) in region.arcs {
+            let segment = self.board.over_segment(arc, budget);
+            sum.value += bulge * segment.value;
+            sum.bound += segment.bound;
+        }
+        BoundedSum {
+            value: if self.odd { -sum.value } else { sum.value },
+            // `sum.bound` assumes that each factor of the board's forms has an error of one
+            // rounding. `relative_error` may be many times as large, so the bound is multiplied by
+            // one plus the ratio of the two.
+            bound: sum.bound * (1.0 + self.relative_error / f64::UNIT),
+        }
     }
 
     fn in_precision<T: Precision>(

@@ -70,9 +70,9 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
                     Some(track) => lines.push(track),
                     None => {
                         let [a, b, c] = line.factors;
-                        // The line is vertical or too steep for a function y(x). If |b| < |a|, it
-                        // cuts the sub-pixel at x = −c/a. Otherwise, it is too far away or
-                        // degenerate, and is ignored.
+                        // The line ax + by + c = 0 has no usable function y(x). If |b| < |a|, it is
+                        // vertical or very steep, and the sub-pixel is cut at x = −c/a. Otherwise,
+                        // the line is too far away or degenerate, and is ignored.
                         if b.abs() < a.abs() {
                             regions.add_doubtful_area((b / a).abs());
                             cuts.push(-c / a);
@@ -123,8 +123,8 @@ struct Slabs<'a> {
     graphs: Vec<ConicGraph>,
     regions: Regions<'a>,
     slabs: usize,
-    /// Maximum area, in square pixels, in which two neighbouring curves of a slab may overlap
-    /// without the slab being cut.
+    /// Maximum area, in square pixels, by which the lower of two neighbouring curves may rise above
+    /// the upper one in a slab that is not cut. The area is added to the error bound.
     doubtful_limit: f64,
 }
 
@@ -237,7 +237,7 @@ fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, r
     let (mut inside, mut gap_in) = (middle, gap_middle);
     let mut last = Ordering::Equal;
     // The crossing is searched by the Illinois variant of false position: if the same end of the
-    // interval is kept twice, the value at that end is halved. Since gap_out < 0 ≤ gap_in, the
+    // interval is kept twice, the stored gap at that end is halved. Since gap_out < 0 ≤ gap_in, the
     // estimate does not leave the interval. If rounding puts the estimate at an end, the halving
     // moves the next estimate away from it.
     for _ in 0..MAX_STEPS {

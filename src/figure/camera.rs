@@ -79,7 +79,7 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     let arrow = 0.13 * (max - min).length();
     points.extend([-view.ahead, view.right, view.top].map(|axis| view.eye + axis * arrow));
 
-    // Seen from there, the ray runs to the right in the figure.
+    // The observer stands at a side from which the ray runs to the right in the figure.
     let side = beside(&view);
     let panel = [
         DVec2::new(50.0, 34.0),
@@ -207,9 +207,10 @@ fn pixel_of_largest(scene: &Scene) -> [u32; 2] {
 /// Index of an object, and the centre and the radius of its bounding sphere.
 type Body = (usize, DVec3, f64);
 
-/// Returns the objects to draw, at most [`MOST_OBJECTS`], without checkerboards. Objects whose
-/// radius or distance from the eye is large compared with `reach` are left out. The object with the
-/// index `first` comes first.
+/// Returns the objects to draw, at most [`MOST_OBJECTS`], without checkerboards. `reach` is the
+/// distance from the eye, in metres, up to which the figure shows the scene. Objects with a greater
+/// radius are left out, and so are objects that extend beyond 1.5 times this distance. The object
+/// with the index `first` comes first.
 fn objects_within(scene: &Scene, reach: f64, first: Option<usize>) -> Vec<Body> {
     let others = (0..scene.objects.len()).filter(|index| Some(*index) != first);
     let bodies = first.into_iter().chain(others).filter_map(|index| {
@@ -222,10 +223,10 @@ fn objects_within(scene: &Scene, reach: f64, first: Option<usize>) -> Vec<Body> 
     bodies.filter(is_small).take(MOST_OBJECTS).collect()
 }
 
-/// Returns lines between the squares of the checkerboards, within the bounding box of `points`, the
-/// points of the figure. If there are many lines, only about [`MOST_LINES`] in each direction are
-/// returned. Adds the corners of each board's drawn area to `points`. Boards much higher or lower
-/// than the eye, or with very large squares, are left out.
+/// Returns the lines between the squares of the checkerboards that are drawn, at most about
+/// [`MOST_LINES`] in each direction. They cover the bounding box of `points`, the points that the
+/// figure shows. Then adds the corners of each drawn board to `points`. Boards that are more than
+/// `reach` metres above or below the eye, or have very large squares, are left out.
 fn boards(scene: &Scene, points: &mut Vec<DVec3>, reach: f64) -> Vec<[DVec3; 2]> {
     let mut lines = Vec::new();
     let (min, max) = bounds3(points);

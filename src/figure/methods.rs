@@ -26,7 +26,7 @@ const SIDE: f64 = 196.0;
 /// downwards. They leave space for the texts above each square.
 const PITCH: DVec2 = DVec2::new(226.0, 262.0);
 
-/// Refuses more samples in a pixel than a figure can show clearly, [`MOST`].
+/// Refuses more than [`MOST`] samples in a pixel, since a figure could not show them clearly.
 ///
 /// # Errors
 ///

@@ -48,10 +48,10 @@ pub const KINDS: [(&str, Kind); 5] = [
 /// The pixel and the triangle that a figure shows. A field that is `None` is chosen automatically.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Choice<'a> {
-    /// Column and row of the pixel. It is for the figures of the camera, of a pixel, and of all
-    /// methods, which takes the pixel (0, 0) if there is none.
+    /// Column and row of the pixel, for the figures `camera`, `pixel` and `methods`. `None` lets
+    /// the figure choose a pixel that suits it; `methods` chooses the pixel (0, 0).
     pub pixel: Option<[u32; 2]>,
-    /// Name of the triangle. It is for the figure of a triangle.
+    /// Name of the triangle, for the figure `triangle`. `None` chooses the scene's first triangle.
     pub object: Option<&'a str>,
 }
 

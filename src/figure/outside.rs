@@ -124,8 +124,8 @@ impl Outside {
     }
 }
 
-/// Returns the overlays of the scene's picture, with the outlines of the objects that are at least
-/// partly visible.
+/// Returns drawings for the picture of the scene's camera, with the outlines of the objects that
+/// are at least partly visible.
 pub fn visible_overlays(scene: &Scene) -> Overlays {
     let (seen, _) = seen(scene);
     let is_seen = |(index, seen)| matches!(seen, Visibility::Part(..)).then_some(index);

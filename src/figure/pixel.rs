@@ -8,11 +8,7 @@ use super::{
     methods::{refuse_too_many, strata, tint_strata},
 };
 use crate::{
-    area::Area,
-    cancel,
-    color::Color,
-    editor::viewport::{PixelSamples, pick, samples},
-    exact::Integrator,
+    editor::viewport::{PixelSamples, SeenColor, samples, seen_colors},
     scene::{Method, Sampler, Scene},
     tracer::World,
 };
@@ -52,7 +48,10 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
     let exact = samples(&exact, &world, [x, y])?.color;
 
     let mut canvas = Canvas::new(2.0 * CORNER.y + SIDE + 26.0);
-    let colors = regions(&mut canvas, &world, [x, y]);
+    regions(&mut canvas, &world, [x, y]);
+    let mut colors = seen_colors(scene, &world, [x, y]);
+    colors.retain(|color| color.at.is_some());
+    colors.truncate(COLORS);
     strata(
         &mut canvas,
         scene.sampler.method,
@@ -105,11 +104,18 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
     };
     cell(&mut canvas, 0, 44.0, "samples");
     cell(&mut canvas, 1, 44.0, "exact");
-    let shares = shares(&world, [x, y], &colors);
     let mut told = Vec::new();
-    for (row, (&(slot, at), share)) in colors.iter().zip(shares).enumerate() {
-        let color = world.palette()[slot];
-        let name = name(scene, &world, at);
+    for (
+        row,
+        &SeenColor {
+            color,
+            share,
+            object,
+            ..
+        },
+    ) in colors.iter().enumerate()
+    {
+        let name = name(scene, object);
         let count = seen.iter().filter(|(_, seen)| *seen == color).count();
         let share = format!("{} %", crate::numbers::rounded(100.0 * share, 0.1));
         let line = 84.0 + 32.0 * row as f64;
@@ -161,15 +167,11 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
     ))
 }
 
-/// Fills the square that shows the pixel (x, y) with the pixel's colours. Returns at most
-/// [`COLORS`] of them, those with the largest areas. Each is returned as its index in the world's
-/// palette, with a point of the picture that shows it.
-fn regions(canvas: &mut Canvas, world: &World, [x, y]: [u32; 2]) -> Vec<(usize, DVec2)> {
+/// Fills the square that shows the pixel (x, y) with the pixel's colours.
+fn regions(canvas: &mut Canvas, world: &World, [x, y]: [u32; 2]) {
     let offset = |i: u32| (f64::from(i) + 0.5) / f64::from(ROWS) - 0.5;
     let step = SIDE / f64::from(ROWS);
-    let slots = world.palette().len();
-    let mut paths = vec![String::new(); slots];
-    let mut points = vec![(0, DVec2::ZERO); slots];
+    let mut paths = vec![String::new(); world.palette().len()];
     for j in 0..ROWS {
         let slot = |i: u32| world.slot_at(x, y, DVec2::new(offset(i), offset(j)));
         let row: Vec<usize> = (0..ROWS).map(slot).collect();
@@ -180,12 +182,6 @@ fn regions(canvas: &mut Canvas, world: &World, [x, y]: [u32; 2]) -> Vec<(usize, 
             let [left, top, width, height] =
                 [corner.x, corner.y, width as f64 * step, step].map(length);
             paths[slot] += &format!("M{left} {top}h{width}v{height}h-{width}z");
-            let (count, point) = &mut points[slot];
-            if *count == 0 {
-                let middle = offset(first as u32 + run.len() as u32 / 2);
-                *point = DVec2::new(f64::from(x) + 0.5 + middle, f64::from(y) + 0.5 + offset(j));
-            }
-            *count += run.len();
             first += run.len();
         }
     }
@@ -193,34 +189,13 @@ fn regions(canvas: &mut Canvas, world: &World, [x, y]: [u32; 2]) -> Vec<(usize, 
         let more = format!(" style=\"fill:{color}\" shape-rendering=\"crispEdges\"");
         canvas.raw_path("fill", path, &more);
     }
-    let mut seen: Vec<usize> = (0..slots).filter(|&slot| points[slot].0 > 0).collect();
-    seen.sort_by_key(|&slot| std::cmp::Reverse(points[slot].0));
-    let seen = seen.into_iter().map(|slot| (slot, points[slot].1));
-    seen.take(COLORS).collect()
 }
 
-/// Returns, for each of `colors`, the exact share of the pixel's area that it covers, from 0 to 1.
-fn shares(world: &World, [x, y]: [u32; 2], colors: &[(usize, DVec2)]) -> [f64; COLORS] {
-    let shown: Vec<Color> = colors
-        .iter()
-        .map(|(slot, _)| world.palette()[*slot])
-        .collect();
-    let numbers =
-        |color: Color| std::array::from_fn(|i| f64::from(u8::from(shown.get(i) == Some(&color))));
-    let integrator = Integrator::<COLORS>::for_values(world, numbers);
-    let pixels = integrator.pixels(Area::pixel(x, y), &cancel::NEVER);
-    pixels
-        .and_then(|pixels| pixels.first().copied())
-        .map_or([0.0; COLORS], |pixel| pixel.mean)
-}
-
-/// Returns the name of the object at a point of the picture, or "background". A longer name is cut
-/// to 12 characters.
-fn name(scene: &Scene, world: &World, at: DVec2) -> String {
-    let Some((Some(hit), _)) = pick(scene, world, at) else {
+/// Returns the name of an object, or "background". A longer name is cut to 12 characters.
+fn name(scene: &Scene, object: Option<usize>) -> String {
+    let Some(object) = object.map(|index| &scene.objects[index]) else {
         return "background".to_owned();
     };
-    let object = &scene.objects[hit.object];
     let name = object.name.as_deref().unwrap_or(object.shape.kind());
     match name.chars().count() {
         0..=12 => name.to_owned(),

@@ -69,7 +69,8 @@ pub fn write_in_place(
 /// Returns the copies that processes left when they were killed while they overwrote a file. A copy
 /// may be incomplete. Searches beside the file and in the user's state folder.
 pub fn copies_left(path: &Path) -> Vec<PathBuf> {
-    // Copies are named after the file itself, not after a link to it.
+    // If the path is a symbolic link, copies lie beside the link's target and are named after the
+    // target.
     let beside = match fs::read_link(path) {
         Ok(_) => fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()),
         Err(_) => path.to_owned(),

@@ -1,5 +1,4 @@
-//! The only function that writes files. It writes a file completely or not at all, and only where
-//! the file's purpose allows it.
+//! Writes files completely or not at all, and only where a file's purpose allows it.
 
 use std::{
     fs::{self, File, Metadata, OpenOptions},

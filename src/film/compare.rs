@@ -26,7 +26,7 @@ const STEEPEST: f64 = 12.92 * STEPS;
 /// Names of a pixel's channels, in the order in which a film stores them.
 pub const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
-/// Greatest difference between two pixels that still counts as equal, in each channel.
+/// Greatest difference between two pixels at which they are treated as equal, in each channel.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance<'a> {
     /// Tolerance that is the same for all pixels, in steps of 8-bit sRGB.

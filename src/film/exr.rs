@@ -166,7 +166,7 @@ struct Rows<I, B> {
     end: u32,
     /// The row that was returned last, as floats.
     floats: Vec<[f32; 3]>,
-    /// Index of the row that was returned last.
+    /// Index of the row that was returned last; `None` before the first row.
     at: Option<u32>,
 }
 

@@ -102,7 +102,7 @@ fn left(group: &Path) -> Option<u64> {
 }
 
 /// Returns the number after `name` in the first line that begins with `name`. `table` is the text
-/// of a system file such as `/proc/meminfo`.
+/// of a system file such as `/proc/meminfo`. Returns `None` if there is no such number.
 fn entry(table: &str, name: &str) -> Option<u64> {
     let entry = table.lines().find_map(|line| line.strip_prefix(name))?;
     entry.split_whitespace().next()?.parse().ok()

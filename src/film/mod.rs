@@ -1,11 +1,14 @@
 //! Pictures in memory, and the files that they are written to and read from.
 //!
 //! In: the number of samples of each colour in a pixel. Out: their mean in linear light (`mean`),
-//! `pixels` in memory, and picture files (`png`, which also contains the scene, and `exr`). `read`
-//! reads a `picture` from a file of any program. It decodes some formats in modules of their own,
-//! such as `pnm` and `read_exr`, and the others with libraries. `compare` measures the differences
-//! of two pictures, and `embed` encodes a picture for an HTML page.
+//! `pixels` in memory, and picture files (`png`, which also contains the scene, `animation` of
+//! several pictures, and `exr`). `read` reads a `picture` from a file of any program. It decodes
+//! some formats in modules of their own, such as `pnm` and `read_exr`, and the others with
+//! libraries. `compare` measures the differences of two pictures, and `embed` encodes a picture for
+//! an HTML page.
 
+#[cfg(feature = "png")]
+mod animation;
 mod compare;
 #[cfg(feature = "pages")]
 mod embed;
@@ -37,6 +40,8 @@ mod srgb;
 #[cfg(feature = "read")]
 mod unreadable;
 
+#[cfg(feature = "png")]
+pub use self::animation::Animation;
 #[cfg(feature = "pages")]
 #[doc(hidden)]
 pub use self::embed::{data_uri, reduced};

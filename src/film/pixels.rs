@@ -17,9 +17,9 @@ pub trait Pixel: Copy + Default + Send + Sync {
     /// Converts the mean `light`, in linear light, to this type.
     fn of(light: [f64; 3], encoder: &Encoder) -> Self;
 
-    /// Returns whether the pixel is certain: whether all colours within `bound` of `light` in each
-    /// channel are converted to the same pixel. For 64-bit floats, it is enough if the colours are
-    /// equal as 32-bit floats, because EXR files contain these.
+    /// Returns whether all colours within `bound` of `light` in each channel are converted to the
+    /// same pixel. For 64-bit floats, it is enough if the colours are equal as 32-bit floats,
+    /// because EXR files contain these.
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool;
 }
 
@@ -53,8 +53,8 @@ impl Pixel for [f64; 3] {
     }
 
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool {
-        // An EXR file contains 32-bit floats. So the colour counts as certain if all colours within
-        // the bound are equal after they are rounded to 32 bits.
+        // An EXR file contains 32-bit floats. So it is enough if all colours within the bound are
+        // equal after they are rounded to 32 bits.
         <[f32; 3]>::is_certain(light, bound, encoder)
     }
 }
@@ -92,11 +92,8 @@ impl Pixel for [u8; 3] {
     }
 
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool {
-        let ends = || [-bound, bound].map(|off| encoder.pixel(light.map(|light| light + off)));
-        bound == 0.0 || {
-            let [low, high] = ends();
-            low == high
-        }
+        let is_certain = |&light: &f64| encoder.is_one_byte(light - bound, light + bound);
+        bound == 0.0 || light.iter().all(is_certain)
     }
 }
 
@@ -280,16 +277,15 @@ impl<P: Pixel> Film<P> {
 ///
 /// # Panics
 ///
-/// The number of error bounds is not that of the pixels.
+/// `bounds` does not contain one bound for each pixel.
 pub fn certified(film: &Film, bounds: &[f32]) -> u64 {
     assert_eq!(
         film.pixels.len(),
         bounds.len(),
         "there is not one error bound for each pixel"
     );
-    let encoder = Encoder::default();
-    let is_certain = |&(&light, &bound): &(&[f64; 3], &f32)| {
-        <[u8; 3]>::is_certain(light, bound.into(), &encoder)
-    };
+    let encoder = Encoder::shared();
+    let is_certain =
+        |&(&light, &bound): &(&[f64; 3], &f32)| <[u8; 3]>::is_certain(light, bound.into(), encoder);
     film.pixels.iter().zip(bounds).filter(is_certain).count() as u64
 }

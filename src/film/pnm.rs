@@ -220,8 +220,9 @@ impl Raster {
         ))
     }
 
-    /// Reads numbers that are written as text, separated by white space. If `is_bits` is set, they
-    /// are single digits that need no separation, and 1 is black.
+    /// Reads the numbers of a file that writes them as text, separated by white space. If `is_bits`
+    /// is set, each number is a single digit, 0 for white or 1 for black, and white space may be
+    /// missing.
     fn in_text(&self, reader: &mut PnmReader, is_bits: bool) -> Result<Vec<u16>, Unreadable> {
         let mut numbers = Vec::with_capacity(self.count());
         for index in 0..self.count() {
@@ -258,8 +259,8 @@ impl Raster {
         (0..self.count()).map(bit).collect()
     }
 
-    /// Reads binary numbers of `length` bytes, one or two, with the high byte first. If the bytes
-    /// had to be repaired, also returns the kind of damage.
+    /// Reads binary numbers with the high byte first. `length` is the length of a number, 1 or 2
+    /// bytes. If the bytes had to be repaired, also returns the kind of damage.
     fn in_bytes(
         &self,
         reader: &PnmReader,

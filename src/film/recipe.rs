@@ -43,8 +43,8 @@ pub struct Part {
 }
 
 impl Recipe {
-    /// Returns whether the recipe's texts are short enough to be stored in a PNG: whether the
-    /// number of overrides and the total length are within their limits.
+    /// Returns whether the recipe can be stored in a PNG: it has at most [`OVERRIDES_LIMIT`]
+    /// overrides, and its scene and overrides together are at most [`TEXT_LIMIT`] bytes long.
     pub fn fits(&self) -> bool {
         let overrides: usize = self.overrides.iter().map(String::len).sum();
         self.overrides.len() <= OVERRIDES_LIMIT && self.scene.len() + overrides <= TEXT_LIMIT

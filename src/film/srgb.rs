@@ -6,7 +6,7 @@
 //! the same as that of [`Color::to_bytes`](crate::color::Color::to_bytes), even halfway between two
 //! bytes.
 
-use std::array;
+use std::{array, sync::LazyLock};
 
 use crate::color::half_byte;
 
@@ -41,6 +41,12 @@ impl Default for Encoder {
 }
 
 impl Encoder {
+    /// Returns the converter that all threads share. It is computed by the first call.
+    pub fn shared() -> &'static Self {
+        static SHARED: LazyLock<Encoder> = LazyLock::new(Encoder::default);
+        &SHARED
+    }
+
     /// Converts a pixel from linear light to bytes of sRGB.
     pub fn pixel(&self, light: [f64; 3]) -> [u8; 3] {
         light.map(|channel| self.encode(channel))
@@ -57,5 +63,11 @@ impl Encoder {
             byte += 1;
         }
         byte
+    }
+
+    /// Returns whether all light from `low` to `high` is converted to the same byte.
+    pub fn is_one_byte(&self, low: f64, high: f64) -> bool {
+        let byte = self.encode(low);
+        byte == 255 || high < self.thresholds[usize::from(byte)]
     }
 }

@@ -244,7 +244,7 @@ type CommentLine<'s> = (bool, Vec<&'s str>);
 /// Assigns comments to entries. `gap` contains the comments between two tokens. Comments on the
 /// line of the previous entry are added to that entry. Each further line of comments becomes an
 /// entry, except the last line. Its comments are returned, because the next entry may stand on the
-/// same line.
+/// same line. Returns `None` if there is no further line.
 fn comments<'s>(
     gap: Gap<'s>,
     container: Container,

@@ -105,9 +105,9 @@ fn is_whole(tree: &Tree<'_>) -> bool {
     })
 }
 
-/// Returns the mistakes that prevent a text from being formatted, as `check` reports them, without
-/// other problems of the scene. The meaning of names is analyzed, too: if a field is unknown,
-/// `check` does not report that its value is missing, so this is not reported here either.
+/// Returns the mistakes that prevent a text from being formatted, as `check` reports them. Other
+/// mistakes of the scene are left out. The meaning of names is analyzed, too: if a field is
+/// unknown, `check` does not report that its value is missing, so this is not reported here either.
 fn mistakes(source: &Source) -> Vec<Diagnostic> {
     let sources = Sources::new(source.clone());
     let SemanticModel {
@@ -116,9 +116,9 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
         ..
     } = scene::analyze(&sources);
     let of_syntax = diagnostics.iter().filter(|it| it.is_of_syntax);
-    // A missing value prevents formatting. If its field or kind is unknown, however, `check`
-    // reports only the unknown name. If there are no other mistakes, these reports are returned, so
-    // that the user learns why the text is not formatted.
+    // Mistakes of syntax and missing values prevent formatting. But if a field or kind is unknown,
+    // `check` reports only the unknown name, not its missing value. So if there are no other
+    // mistakes, the unknown names are returned, and the user learns why the text is not formatted.
     let codes = ["pinhole::unknown_field", "pinhole::unknown_kind"];
     let is_unknown = |it: &&Diagnostic| codes.contains(&it.code.as_str());
     let unknown = diagnostics.iter().filter(is_unknown);

@@ -23,10 +23,9 @@ pub enum Before {
     Nothing,
     /// One blank.
     Space,
-    /// A blank, or a line end if the line would be too long. A too long line is broken at a word
-    /// for which the number in `Fold` is lowest. The number is twice the depth of parentheses
-    /// around the word. For the operator of a product, it is greater by 1, so that lines are broken
-    /// in sums first.
+    /// A blank, or a line end if the line would be too long. Such a line is broken before a token
+    /// with the lowest number. The number is twice the depth of parentheses around the token. For
+    /// the operator of a product, it is greater by 1, so that lines are broken in sums first.
     Fold(usize),
     /// A line end.
     Line,

@@ -39,9 +39,9 @@ const USELESS_REST: f64 = 0.5;
 /// estimated from the picture.
 const GAIN: &str = "{gain}";
 
-/// Identifier of the mistake that rays are parallel. The rays then start in a window, and the
-/// distance of the view plane and the angle of view affect only the window's size. So wrong numbers
-/// for these fields are reported as a wrong window size.
+/// Identifier of the mistake that rays are parallel. Such rays start in a window. The distance of
+/// the view plane and the angle of view then affect only the size of this window. So if these
+/// fields have wrong numbers as well, the message says that the window has a wrong size.
 const PARALLEL: &str = "parallel_rays";
 const PARALLEL_OF_OWN_SIZE: &str =
     "the rays are parallel: they leave along −w, from a window whose size is not the scene's";
@@ -81,7 +81,7 @@ pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Ve
 
 /// Returns whether a pixel has a colour that no mixture of the scene's colours has: one of its
 /// channels is less, or greater, than in all colours of the scene. A correct pixel is a mean of
-/// these colours.
+/// these colours. Returns `false` for a JPEG, which is not tested.
 fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
     let colors = scene.objects.iter();
     let colors = colors.flat_map(|object| object.shape.colors());
@@ -99,14 +99,14 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
     jpeg.is_none() && film.pixels().iter().any(is_other)
 }
 
-/// Returns the mistakes of the hypothesis `last` in words, each with the part of the difference
-/// from the picture that it explains. `is_explained` says whether the hypothesis explains the
-/// picture.
+/// Returns the mistakes of the hypothesis `last` in words. Each comes with the share of the squared
+/// error between the correct scene and the student's picture that disappears if the mistake is
+/// assumed. `is_explained` says whether all mistakes together explain the picture.
 fn attributed(judge: &Judge, last: &Candidate, is_explained: bool) -> Vec<NamedMistake> {
     let scene = judge.scene;
-    // The medium resolution is enough to measure how much each mistake explains. Shifted samples
-    // and a wrong pixel width are visible only at full resolution, so the central crop is used for
-    // them.
+    // Most mistakes are visible on the grid of medium resolution. Shifted samples and a wrong pixel
+    // width are visible only in single pixels. So these are measured in the central crop, which has
+    // full resolution.
     let level = if last.behaviour.is_shifted() || last.is_filtered() {
         judge.central_crop()
     } else {
@@ -261,8 +261,8 @@ fn is_made_up(candidate: &Candidate) -> bool {
 }
 
 /// Returns the variants of a mistake that explain the picture, too. The picture alone cannot tell
-/// which of them the program makes. Variants that are visible only weakly inside areas of one
-/// colour, or only at edges, are left out.
+/// which of them the program makes. Only rows of the table of mistakes have variants. Those that
+/// are visible only weakly inside areas of one colour, or only at edges, are left out.
 fn equivalent_rows(judge: &Judge, candidate: &Candidate, mistake: &Mistake) -> Vec<Mistake> {
     let Mistake::Row(row, object) = mistake else {
         return Vec::new();

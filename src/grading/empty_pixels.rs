@@ -13,8 +13,9 @@ use super::{
 };
 use crate::film::Film;
 
-/// Replaces pixels without a sample by NaN. `empty` is the colour that a program writes into such a
-/// pixel. Returns `None` if no pixel lacks a sample.
+/// Replaces pixels without a sample by NaN. `moments` describes the exact picture, and `empty` is
+/// the colour that a program writes into a pixel without a sample. Returns `None` if no pixel seems
+/// to lack a sample.
 ///
 /// A pixel is suspected if it has the colour `empty` and the exact picture has another colour
 /// there. The suspicion is dropped in two cases. First, if suspects are neighbours more often than
@@ -49,10 +50,11 @@ pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Op
         }
     }
     let both = share * share;
-    // Pairs that share a pixel are not independent, and each pair shares a pixel with six others.
-    // So the number of empty pairs has a larger variance than a Poisson variable of the same mean.
-    // `more` is the quotient of the variance and the mean. The found number and the expected number
-    // are both divided by it, so that the bound for a Poisson variable applies.
+    // Two neighbouring pixels form a pair. Pairs that share a pixel are not independent, and each
+    // pair shares a pixel with six others. So the number of pairs without a sample has a larger
+    // variance than a Poisson variable of the same mean. `more` is the quotient of this variance
+    // and the mean. The observed and the expected number of such pairs are both divided by it, so
+    // that the bound for a Poisson variable applies.
     let more = 1.0 - both + 6.0 * share * (1.0 - share);
     if !is_chance(empty_pairs / more, pairs * both / more) {
         return None;
@@ -65,10 +67,11 @@ pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Op
     }
     let seen: Vec<DVec3> = without.pixels().iter().copied().map(DVec3::from).collect();
     let prediction = Prediction::new(&seen, width, Arc::clone(moments), Curve::Correct);
-    // `samples` is estimated from the noise, so it is a harmonic mean: that of the sample counts of
-    // all pixels with samples. The harmonic mean is at most their arithmetic mean, n/(1 − e⁻ⁿ),
-    // where n is the mean sample count of all pixels. This is less than n + 1. So the expected
-    // fraction of empty pixels, e⁻ⁿ, is less than e^(1 − `samples`).
+    // `samples` is estimated from the noise. It is therefore the harmonic mean of the sample counts
+    // of all pixels that have samples. Their arithmetic mean is n/(1 − e⁻ⁿ), where n is the mean
+    // sample count of all pixels. A harmonic mean is at most the arithmetic one, so `samples` is
+    // less than n + 1. So the expected fraction of empty pixels, e⁻ⁿ, is less than e^(1 −
+    // `samples`).
     let samples = prediction.score().samples?;
     let expected = count * libm::exp(1.0 - samples);
     is_chance(found, expected).then_some(without)

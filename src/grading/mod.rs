@@ -76,10 +76,10 @@ pub struct Reference {
     effort: f64,
 }
 
-/// Number of bytes per pixel that the computation of the exact picture needs. It is enough for
-/// seven colours of three numbers each: the exact mean; and a mean, its variance, and the variance
-/// of a sample, each of these three twice. Two copies of the three exist for a short time, while
-/// the moments of the picture are collected.
+/// Number of bytes per pixel that the computation of the exact picture needs. They store seven
+/// colours of three numbers each. One colour is the exact mean. The moments of a pixel are three
+/// more: a mean, its variance, and the variance of a sample. While the moments are collected, they
+/// exist twice for a short time.
 const BYTES_A_PIXEL: u64 = 7 * size_of::<[f64; 3]>() as u64;
 
 impl fmt::Debug for Reference {

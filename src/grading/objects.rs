@@ -13,8 +13,8 @@ use crate::{
     scene::{Checkerboard, Scene, Shape},
 };
 
-/// Displacement in the picture, in pixels, below which an object counts as not moved. With a
-/// smaller value, an object would count as wrong although its error is hardly visible.
+/// Displacement in the picture, in pixels, below which an object is treated as not moved. With a
+/// smaller value, an object would be reported as wrong although its error is hardly visible.
 const HALF_PIXEL: f64 = 0.5;
 
 /// Distance from a wrong object, in pixels, within which errors are attributed to it instead of its
@@ -100,7 +100,8 @@ pub fn off(from: &Scene, to: &Scene, object: usize) -> f64 {
     let moved = before.into_iter().zip(after).filter_map(|(before, after)| {
         let (before, after) = (projections[0].point(before)?, projections[1].point(after));
         let is_near = before.cmpge(-size).all() && before.cmple(2.0 * size).all();
-        // A point that is no longer ahead of the eye counts as moved by the picture's diagonal.
+        // A point that is no longer ahead of the eye is treated as if it moved by the picture's
+        // diagonal.
         let off = after.map_or(size.length(), |after| before.distance(after));
         is_near.then(|| off.min(size.length()))
     });

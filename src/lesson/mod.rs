@@ -11,7 +11,11 @@ use glam::DVec2;
 use serde_json::Value;
 
 pub use self::{facts::Facts, parser::parse};
-use crate::numbers::short;
+use crate::{
+    diagnostic::{Diagnostic, Severity},
+    numbers::short,
+    source::Span,
+};
 
 /// The conditions of a lesson.
 #[derive(Debug)]
@@ -27,18 +31,20 @@ pub struct Lesson {
 pub struct Condition {
     /// The condition as it is written.
     pub text: String,
-    /// The comment behind the condition, which says it in words; empty if there is none.
+    /// The comment after the condition, which explains the condition; empty if there is none.
     pub words: String,
     /// The line of the condition, counted from 1.
     pub line: usize,
     base: Base,
     /// JSON pointer to the value, below the base.
     pointer: String,
+    /// Place of the pointer in the text of the lesson.
+    place: Span,
     operator: &'static str,
     expected: Expected,
 }
 
-/// What a condition looks at.
+/// Source of the value that a condition checks.
 #[derive(Clone, Copy, Debug)]
 enum Base {
     /// What `pinhole inspect` says about the student's scene.
@@ -56,8 +62,8 @@ enum Base {
 enum Expected {
     Value(Value),
     Range(f64, f64),
-    /// The value at the same path of the start scene, or a range around it whose half is this share
-    /// of the value.
+    /// The value v at the same path of the lesson's own scene. A number `share` stands for the
+    /// range from v − share·|v| to v + share·|v|; `None` stands for v itself.
     Start(Option<f64>),
 }
 
@@ -76,6 +82,26 @@ pub struct Judged<'l> {
 }
 
 impl Lesson {
+    /// Returns a warning for each path of which a part is probably misspelt: the scene of the
+    /// lesson has no such value or object, but a similar one.
+    pub fn warnings(&self, start: &Facts<'_>) -> Vec<Diagnostic> {
+        let conditions = self.checks.iter().flatten();
+        let warning = |it: &Condition| {
+            let (token, near) = match it.base {
+                Base::Inspect | Base::Start => facts::misspelt(start.inspected(), &it.pointer)?,
+                Base::Probe(point) => facts::misspelt(&start.probed(point), &it.pointer)?,
+                Base::Error => return None,
+            };
+            Some(parser::diagnostic(
+                Severity::Warning,
+                it.place,
+                format!("the lesson's own scene has no `{token}` here"),
+                format!("did you mean `{near}`?"),
+            ))
+        };
+        conditions.filter_map(warning).collect()
+    }
+
     /// Judges a student's scene. Returns the conditions of each block.
     pub fn judge(&self, scene: &Facts<'_>, start: &Facts<'_>) -> Vec<Vec<Judged<'_>>> {
         let judge = |it| Condition::judge(it, scene, start);
@@ -100,7 +126,7 @@ impl Condition {
         }
     }
 
-    /// Returns the value at the condition's path.
+    /// Returns the value at the condition's path, or `None` if there is none.
     fn find(&self, scene: &Facts<'_>, start: &Facts<'_>) -> Option<Value> {
         let at = |value: &Value| facts::at(value, &self.pointer).cloned();
         match self.base {
@@ -111,8 +137,9 @@ impl Condition {
         }
     }
 
-    /// Returns whether the condition holds for a value. Returns `None` if there is no value, or if
-    /// an order is asked for that the values do not have.
+    /// Returns whether the condition holds for the value `found`; `at_start` is the value at the
+    /// same path of the lesson's own scene. Returns `None` if a value is missing, or if a
+    /// comparison requires numbers and a value is not a number.
     fn holds(&self, found: Option<&Value>, at_start: Option<&Value>) -> Option<bool> {
         let expected = match &self.expected {
             Expected::Value(value) => value,

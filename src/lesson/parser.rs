@@ -12,19 +12,21 @@ use crate::{
 const BASES: [&str; 4] = ["inspect", "start", "probe", "error"];
 const OPERATORS: [&str; 6] = ["=", "<", "<=", ">", ">=", "in"];
 
-/// Parses the conditions of a lesson, which is Markdown. They stand in fenced blocks `check`. Each
-/// line of such a block is empty, a comment from `//` on, or a condition `PATH OP VALUE`, behind
-/// which a comment may stand.
+/// Parses the conditions of a lesson, which is Markdown. The conditions are in fenced code blocks
+/// with the info string `check`. Each line of such a block is empty, a comment that starts with
+/// `//`, or a condition `PATH OP VALUE`. A comment may follow the condition.
 ///
-/// - PATH is a JSON pointer below `inspect`, `start` or `probe X Y`, or is `error`. In a list, it
-///   may have a name in place of an index: `inspect/objects/Ball/radius`.
+/// - PATH is a JSON pointer below `inspect`, `start` or `probe X Y`, or the word `error`. The
+///   pointer may contain the name of a list's element in place of its index:
+///   `inspect/objects/Ball/radius`.
 /// - OP is `=`, `<`, `<=`, `>`, `>=` or `in`.
-/// - VALUE is a JSON value or `start`, which is the value at the same path of the lesson's own
-///   scene. Behind `in`, it is a range `20..30`, a list, or `start ± 2%`.
+/// - VALUE is a JSON value, or the word `start`, which stands for the value at the same path of the
+///   lesson's own scene. After `in`, it is a range `20..30`, a list, or `start ± 2%`.
 ///
 /// # Errors
 ///
-/// Returns a diagnostic for each line that is no condition, or one if there are no conditions.
+/// Returns a diagnostic for each line that is no condition. Returns one diagnostic if there are no
+/// conditions at all.
 pub fn parse(source: &Source) -> Result<Lesson, Vec<Diagnostic>> {
     let text = source.text();
     let mut checks: Vec<Vec<Condition>> = Vec::new();
@@ -42,7 +44,7 @@ pub fn parse(source: &Source) -> Result<Lesson, Vec<Diagnostic>> {
                 fence = fence.filter(|_| !words.starts_with(mark));
             }
             Some((_, true)) if !words.starts_with("//") => {
-                match (condition(words, number), checks.last_mut()) {
+                match (condition(text, words, number), checks.last_mut()) {
                     (Ok(condition), Some(block)) => block.push(condition),
                     (Ok(_), None) => {}
                     (Err(problem), _) => problems.push(problem),
@@ -64,30 +66,32 @@ pub fn parse(source: &Source) -> Result<Lesson, Vec<Diagnostic>> {
     }
     Err(problems
         .into_iter()
-        .map(|it| diagnostic(text, it))
+        .map(|(part, message, help)| diagnostic(Severity::Error, span(text, part), message, help))
         .collect())
 }
 
-/// Returns the characters of the fence that a line opens, and whether the block is a check.
+/// Returns the characters of the fence that a line opens, and whether its block is a `check`.
+/// Returns `None` if the line opens no fence.
 fn opened_by(line: &str) -> Option<(&str, bool)> {
     let sign = ['`', '~'].into_iter().find(|it| line.starts_with(*it))?;
     let info = line.trim_start_matches(sign);
     let mark = &line[..line.len() - info.len()];
-    (mark.len() >= 3).then(|| (mark, info.split_whitespace().next() == Some("check")))
+    // Backticks after the first ones are those of code within a line.
+    let is_fence = mark.len() >= 3 && !(sign == '`' && info.contains(sign));
+    is_fence.then(|| (mark, info.trim() == "check"))
 }
 
 /// The part of the text that is wrong, what is wrong with it, and what would be right.
 type Problem<'t> = (&'t str, String, String);
 
-fn diagnostic(text: &str, (part, message, help): Problem<'_>) -> Diagnostic {
-    let start = part.as_ptr() as usize - text.as_ptr() as usize;
+pub fn diagnostic(severity: Severity, span: Span, message: String, help: String) -> Diagnostic {
     Diagnostic {
-        severity: Severity::Error,
+        severity,
         code: "pinhole::lesson".to_owned(),
         message,
         help: Some(help),
         labels: vec![Label {
-            span: Span::new(SourceId::File, start, start + part.len()),
+            span,
             message: "here".to_owned(),
         }],
         fixes: Vec::new(),
@@ -96,8 +100,15 @@ fn diagnostic(text: &str, (part, message, help): Problem<'_>) -> Diagnostic {
     }
 }
 
-fn condition(line: &str, number: usize) -> Result<Condition, Problem<'_>> {
-    let (text, words) = line.split_once(" //").unwrap_or((line, ""));
+/// Returns the place of a part of a text.
+fn span(text: &str, part: &str) -> Span {
+    let start = part.as_ptr() as usize - text.as_ptr() as usize;
+    Span::new(SourceId::File, start, start + part.len())
+}
+
+/// Parses a line of the lesson `all`.
+fn condition<'t>(all: &str, line: &'t str, number: usize) -> Result<Condition, Problem<'t>> {
+    let (text, words) = without_comment(line);
     let Some((base, pointer, rest)) = path(text) else {
         let (name, _) = until_pointer(text);
         let near = suggest::nearest(name, BASES).filter(|near| *near != name);
@@ -124,6 +135,8 @@ fn condition(line: &str, number: usize) -> Result<Condition, Problem<'_>> {
     let value = value.trim();
     let expected = expected(operator, value).ok_or_else(|| {
         let help = match operator {
+            "=" if value.contains('±') => "a range is written `in start ± 2%`",
+            "in" if value.contains("..") => "such as `20..30`: the smaller end comes first",
             "=" => {
                 "such as `20`, `true`, `null`, `start`, or a name in quotation marks: `\"Ball\"`"
             }
@@ -140,12 +153,14 @@ fn condition(line: &str, number: usize) -> Result<Condition, Problem<'_>> {
         line: number,
         base,
         pointer: pointer.to_owned(),
+        place: span(all, pointer),
         operator,
         expected,
     })
 }
 
-/// Parses a path. Returns its base, its pointer, and what follows it.
+/// Parses a path. Returns its base, its JSON pointer, and the text after the path. Returns `None`
+/// if the text does not start with a path.
 fn path(text: &str) -> Option<(Base, &str, &str)> {
     let (name, rest) = until_pointer(text);
     let (base, rest) = match name {
@@ -189,6 +204,25 @@ fn expected(operator: &str, value: &str) -> Option<Expected> {
         _ => value.is_number(),
     };
     fits.then_some(Expected::Value(value))
+}
+
+/// Splits a line into its condition and the comment after it. A comment begins with `//` after
+/// white space, but not within quotation marks.
+fn without_comment(line: &str) -> (&str, &str) {
+    let (mut before, mut is_quoted) = (' ', false);
+    for (at, sign) in line.char_indices() {
+        match sign {
+            '"' if before != '\\' => is_quoted = !is_quoted,
+            '/' if !is_quoted && before.is_whitespace() => {
+                if let Some(comment) = line[at..].strip_prefix("//") {
+                    return (line[..at].trim_end(), comment);
+                }
+            }
+            _ => {}
+        }
+        before = sign;
+    }
+    (line, "")
 }
 
 fn finite(text: &str) -> Option<f64> {

@@ -49,8 +49,8 @@ impl Picture {
     }
 
     /// Makes a picture from pixels of another program, row by row from the top, in linear light
-    /// from 0 to 1. The pixels are judged as precise to 32 bits; for those of 8-bit files, use
-    /// [`from_rgb8`](Self::from_rgb8).
+    /// from 0 to 1. When the picture is graded, the pixels are assumed to be rounded to 32-bit
+    /// floats. For pixels of 8-bit files, use [`from_rgb8`](Self::from_rgb8).
     ///
     /// ```
     /// use pinhole::{Picture, Scene};
@@ -130,12 +130,13 @@ impl Picture {
     /// PNG file contains the same bytes.
     pub fn to_rgb8(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
-        AsBytes::bytes(self.pixels(), &Encoder::default(), &mut bytes);
+        AsBytes::bytes(self.pixels(), Encoder::shared(), &mut bytes);
         bytes
     }
 
-    /// Returns the text and the settings of the scene that the picture shows. They are known if the
-    /// picture was rendered, or read from a PNG that contains them.
+    /// Returns the text and the settings of the scene that the picture shows. Returns `None` if
+    /// they are unknown, i.e. if the picture was made from pixels, or read from a file that does
+    /// not contain them.
     pub fn sources(&self) -> Option<&Sources> {
         self.sources.as_deref()
     }

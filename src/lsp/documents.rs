@@ -124,14 +124,14 @@ mod tests {
                 assert_eq!(document.line_column(offset), (0, column));
                 assert_eq!(document.offset((0, column)), offset);
             }
-            // A position after the end of its line counts as the line's end, and a position after
-            // the last line as the end of the text.
+            // A position after the end of its line is treated as the line's end, and a position
+            // after the last line as the end of the text.
             for (place, offset) in [((0, 99), 10), ((1, 1), 13), ((2, 0), 14), ((99, 99), 14)] {
                 assert_eq!(document.offset(place), offset);
             }
             assert_eq!(document.line_column(99), (2, 0));
         }
-        // A position within a character counts as the character's start.
+        // A position within a character is treated as the character's start.
         let document = Document::new("a.scn", 1, "é🎱b".to_owned(), Encoding::Utf8);
         assert_eq!(document.offset((0, 4)), 2);
     }

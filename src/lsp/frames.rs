@@ -36,7 +36,8 @@ struct Frame {
     uri: Uri,
     /// Version of the text that the frame shows.
     version: i32,
-    /// Whose picture the frame is; `None` for the picture of the scene's own camera.
+    /// Second camera that looks at the scene from outside and whose picture is rendered; `None` for
+    /// the picture of the scene's own camera.
     observer: Option<Observer>,
     /// Factor by which the picture's width and height are divided.
     scale: u32,
@@ -50,11 +51,12 @@ struct Frame {
 impl Frames {
     /// Adds the frame that a request asks for. If the queue contains an equal frame, the new
     /// request replaces the earlier request for it. Otherwise, frames of other versions of the text
-    /// are dropped, and so are those of another observer, if the new one is of an observer. Returns
-    /// the identifiers of the requests that are replaced or dropped.
+    /// are dropped. If the new frame shows the scene as an observer (a second camera) sees it,
+    /// frames of other observers are dropped, too. Returns the identifiers of the requests that are
+    /// replaced or dropped.
     ///
-    /// An observer's frame comes before those that take more samples a pixel. Being small, it does
-    /// not delay them much, but they would delay it by a long time.
+    /// A frame of an observer is put before frames with more samples per pixel. Such a frame is
+    /// small, so it delays the other frames little, while it would have to wait long for them.
     pub fn push(
         &mut self,
         id: RequestId,
@@ -65,8 +67,8 @@ impl Frames {
         let new = Frame::new(id, uri, params, version)?;
         let what = |frame: &Frame| (frame.version, frame.observer, frame.scale, frame.samples);
         let mut of_text = self.0.iter_mut().filter(|frame| frame.uri == new.uri);
-        // The queue contains the same frame already, and a part of it may be rendered. This frame
-        // then answers the new request.
+        // The queue contains the same frame already, and a part of it may be rendered. It is kept
+        // and will answer the new request instead of the earlier one.
         if let Some(known) = of_text.find(|frame| what(frame) == what(&new)) {
             return Ok(vec![mem::replace(&mut known.id, new.id)]);
         }
@@ -102,13 +104,14 @@ impl Frames {
         removed.map(|frame| frame.id).collect()
     }
 
-    /// Returns the identifier of the request for the first frame.
+    /// Returns the identifier of the request for the first frame, or `None` if there are no frames.
     pub fn first(&self) -> Option<RequestId> {
         self.0.first().map(|frame| frame.id.clone())
     }
 
-    /// Renders a slice of the first frame. When the frame is finished, returns the answer to its
-    /// request.
+    /// Renders a slice of the first frame. Returns the answer to its request when the frame is
+    /// finished, and otherwise `None`. The answer is null if the scene of the frame's version of
+    /// the text is no longer stored.
     pub fn advance(
         &mut self,
         scenes: &mut HashMap<Uri, Option<SceneVersion>>,
@@ -190,7 +193,7 @@ impl Frame {
         })
     }
 
-    /// Renders the next slice. After the last slice, returns the answer.
+    /// Renders the next slice. Returns the answer after the last slice, and otherwise `None`.
     fn advance(&mut self, version: &mut SceneVersion) -> Result<Option<Value>, Refusal> {
         let (scene, world) = version.world(self.observer.as_ref(), self.scale);
         let size = [scene.image.width, scene.image.height];

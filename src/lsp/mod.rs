@@ -8,8 +8,8 @@
 //!
 //! `picture_requests` and `frames` answer requests about the picture of a text. These requests are
 //! Pinhole's additions to the protocol; docs/protocol.md describes them. `scene_version` caches the
-//! scene and the tracer's data, from which they are answered. `view` reads the second camera of
-//! requests whose picture is not that of the scene's own camera.
+//! scene and the tracer's data, from which they are answered. A request may ask for the picture of
+//! a second camera, which shows the scene from outside; `view` reads this camera.
 
 mod convert;
 mod documents;

@@ -34,6 +34,7 @@ impl Refusal {
 pub type Answer = Result<Value, Refusal>;
 
 /// Reads the value at the JSON pointer `path` in the parameters. A missing value is read as null.
+/// Returns an error if the value has another type than `T`.
 pub fn at<T: serde::de::DeserializeOwned>(params: &Value, path: &str) -> Result<T, Refusal> {
     let found = params.pointer(path).cloned().unwrap_or_default();
     serde_json::from_value(found).map_err(Refusal::invalid)

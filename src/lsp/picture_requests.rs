@@ -267,8 +267,9 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion
     Ok(answer)
 }
 
-/// Returns the ray of the scene's camera through the parameter `point`, a point of its picture;
-/// `None` if there is no such parameter, or if the point is outside of the picture.
+/// Returns the ray of the scene's camera through the point of the picture that the parameter
+/// `point` names. Returns `None` if there is no such parameter, or if the point is outside of the
+/// picture.
 fn pointed_ray(params: &Value, version: &mut SceneVersion) -> Result<Option<PointedRay>, Refusal> {
     let Some(pixel) = optional::<[f64; 2]>(params, "point")?.map(DVec2::from) else {
         return Ok(None);
@@ -312,7 +313,8 @@ fn drag(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) ->
     let along: Option<String> = optional(params, "along")?;
     let to = point(params, "to")?;
     let observer = observer(params, &version.scene)?;
-    // From outside, the camera has handles, as objects have.
+    // The earlier position of the pointer is needed only if the camera is dragged in its own
+    // picture. In an observer's picture, the camera has handles, as objects have.
     let from = match object {
         None if observer.is_none() => point(params, "from")?,
         _ => to,
@@ -360,7 +362,8 @@ fn samples(params: &Value, version: &mut SceneVersion) -> Answer {
     Ok(json!({ "points": points, "colors": colors, "color": color, "mean": found.mean }))
 }
 
-/// Answers with what a pixel shows, its exact colour, and the errors of all methods there.
+/// Answers with what a pixel shows, its exact colour, and the errors of all sampling methods in
+/// this pixel.
 fn glass(params: &Value, version: &mut SceneVersion) -> Answer {
     let pixel = pixel(params, version)?;
     let (scene, world) = version.world(None, 1);
@@ -389,6 +392,7 @@ fn glass(params: &Value, version: &mut SceneVersion) -> Answer {
         "color": viewport::color_of(exact.mean).to_string(),
         "mean": exact.mean,
         "bound": exact.bound,
+        "method": scene.sampler.method.name(),
         "counts": SAMPLE_COUNTS,
         "errors": errors.collect::<Vec<_>>(),
     }))

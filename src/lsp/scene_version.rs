@@ -31,19 +31,21 @@ pub struct SceneVersion {
     /// Span of each object's name or, if an object has no name, of its keyword.
     pub selections: Vec<Span>,
     worlds: VecDeque<Pictured>,
-    /// Index of the object that was dragged last, and a copy of the scene's text without the other
-    /// objects. The index is `None` if the camera was dragged, in which case the copy contains no
-    /// objects. The field is `None` before the first drag.
+    /// Object that was dragged last, by its index, and a copy of the scene's text without the other
+    /// objects. If the camera was dragged, the index is `None`, and the copy contains no objects.
+    /// Before the first drag, the whole field is `None`.
     alone: Option<(Option<usize>, Sources)>,
 }
 
-/// A picture of the scene: by its own camera, or by an observer's.
+/// A picture of the scene that may be requested, with the tracer's data for it. It shows the scene
+/// as its own camera sees it or, if there is an `observer`, as this second camera sees it.
 #[derive(Debug)]
 struct Pictured {
     observer: Option<Observer>,
     /// Factor by which the width and height of the picture are divided.
     scale: u32,
-    /// The scene with the camera and the size of the picture, before the division.
+    /// The scene with the camera of this picture, and with the width and height that are not yet
+    /// divided by `scale`.
     scene: Scene,
     world: World,
 }
@@ -61,9 +63,10 @@ impl SceneVersion {
         })
     }
 
-    /// Returns the scene as `observer` sees it (its own camera, if that is `None`), and the data of
-    /// the tracer for a picture whose width and height are divided by `scale`. The data are cached.
-    /// Of observers, only the newest one is kept, since they change with each step of the pointer.
+    /// Returns the scene and the tracer's data for its picture, which are cached. If there is an
+    /// `observer`, it takes the place of the scene's own camera. `scale` divides the width and the
+    /// height of the picture. Only the newest observer's data are kept, since the observer changes
+    /// with each movement of the pointer.
     pub fn world(&mut self, observer: Option<&Observer>, scale: u32) -> (&Scene, &World) {
         let is_wanted = |it: &Pictured| it.observer.as_ref() == observer && it.scale == scale;
         let found = self.worlds.iter().position(is_wanted);
@@ -105,8 +108,8 @@ impl SceneVersion {
         (&self.scene, alone)
     }
 
-    /// Returns the width and height of the picture, or of that of an observer, divided by `scale`,
-    /// rounded up.
+    /// Returns the width and height of the observer's picture or, without an observer, of the
+    /// scene's picture. Both are divided by `scale` and rounded up.
     pub fn size(&self, observer: Option<&Observer>, scale: u32) -> (u32, u32) {
         let image = &self.scene.image;
         let [width, height] = observer.map_or([image.width, image.height], |it| it.size);

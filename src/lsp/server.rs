@@ -58,10 +58,9 @@ pub struct Server {
     /// For each document whose picture was requested, the scene of the current version. The scene
     /// is `None` if this version has errors.
     scenes: HashMap<Uri, Option<SceneVersion>>,
-    /// For each text that has changed since its scene was built, the scene of the last version
-    /// without errors. While the text has errors, this scene is shown by frames whose request sets
-    /// the parameter `last`. Entries have the same type as in `scenes`, from which they are moved,
-    /// but are never `None`.
+    /// For each text that has changed, the scene of its last version without errors. If the text
+    /// now has errors, a frame can still show this scene; the request asks for it by the parameter
+    /// `last`. The values are moved from `scenes` and have the same type, but are never `None`.
     last: HashMap<Uri, Option<SceneVersion>>,
     frames: Frames,
     log: fn(&str),
@@ -211,7 +210,8 @@ impl Server {
         outgoing
     }
 
-    /// Renders a slice of the first frame. When the frame is finished, returns the answer.
+    /// Renders a slice of the first frame. Returns the answer when the frame is finished, and
+    /// otherwise `None`.
     fn advance_frame(&mut self) -> Option<Message> {
         let id = self.frames.first()?;
         let (frames, scenes, last) = (&mut self.frames, &mut self.scenes, &mut self.last);

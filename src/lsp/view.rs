@@ -1,5 +1,6 @@
-//! Reads the parameter `view` of requests about the picture: an observer that sees the scene from
-//! outside. Writes the drawing of the scene's camera in its picture.
+//! Reads the parameter `view` of requests about the picture. It describes an observer, i.e. a
+//! second camera that sees the scene from outside. Also converts the drawing of the scene's own
+//! camera in the observer's picture to JSON.
 
 use glam::{DVec2, DVec3};
 use serde::Deserialize;
@@ -11,7 +12,7 @@ use crate::{
     scene::Scene,
 };
 
-/// The parameter `view`. If `eye` and `lookat` are missing, they are chosen.
+/// The parameter `view`. If `eye` and `lookat` are missing, the server chooses them.
 #[derive(Deserialize)]
 struct View {
     eye: Option<[f64; 3]>,
@@ -42,7 +43,7 @@ pub fn observer(params: &Value, scene: &Scene) -> Result<Option<Observer>, Refus
         fov,
         size,
     };
-    // What is chosen depends on the other values, so these are checked before.
+    // The choice of `eye` and `lookat` depends on the other values, so these are checked first.
     let is_possible = given(DVec3::ZERO, DVec3::NEG_Z).is_possible();
     let observer = match (view.eye, view.lookat) {
         _ if !is_possible => None,
@@ -76,7 +77,8 @@ pub fn written_view(observer: &Observer) -> Value {
     })
 }
 
-/// Writes the drawing of the scene's camera. `point` and `lines` write points and lines.
+/// Converts the drawing of the scene's camera to JSON. The functions `point` and `lines` convert
+/// its points and lines.
 pub fn written_camera(
     overlay: &CameraOverlay,
     point: impl Fn(DVec2) -> Value,

@@ -27,9 +27,10 @@ pub struct Ball<T: Real> {
 pub const UP: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
 /// Factor in the bound on the rounding error of a ball's midpoint. The bound is this factor times
-/// [`UNIT`](Real::UNIT) times the computed midpoint. A factor of 2 would suffice, because `UNIT`
-/// bounds the error relative to the true number. The larger factor seldom matters: a decision that
-/// becomes uncertain is made in the next precision.
+/// [`UNIT`](Real::UNIT) times the computed midpoint. A factor of 2 would suffice: `UNIT` bounds the
+/// error relative to the true number, which is less than twice the computed one. A larger factor
+/// makes more decisions uncertain. This seldom matters, because an uncertain decision is made in
+/// the next precision.
 const ROUNDING: f64 = 4.0;
 
 impl<T: Real> Ball<T> {

@@ -27,8 +27,8 @@ pub(super) const PRECISION: usize = 320;
 const GUARD: usize = 320;
 
 impl Big {
-    /// Number of bits of a [`Big`]. An integer of more bits is rounded, so that its last bit is 0,
-    /// and it is always even.
+    /// Number of bits of a [`Big`]. A greater integer is rounded to this many bits, so that it is
+    /// always even.
     pub const BITS: i32 = PRECISION as i32;
 
     /// Rounds `x` to the nearest big number.

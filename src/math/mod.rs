@@ -16,6 +16,7 @@ mod real;
 mod simd_width;
 mod sine;
 pub mod trig;
+mod unit;
 
 pub use angle::Angle;
 pub use ball::{Ball, Ball3, Doubt, UP, cross, dot};
@@ -26,3 +27,4 @@ pub use radius::{Radius, Wide};
 pub use real::{ROUND, Real, floor};
 pub use simd_width::{HAS_WIDER, SimdWidth};
 pub use sine::sin_cos;
+pub use unit::unit;

@@ -136,8 +136,9 @@ mod tests {
         assert!(cross_is_zero(DVec3::Y, eye, down));
         let beside = DVec3::new(0.1, -7.0, 0.3_f64.next_up());
         assert!(!cross_is_zero(DVec3::Y, eye, beside));
-        // The difference of the points must not be rounded. In `f64`, 1e30 − 0.1 and 1e30 − 0.2 are
-        // both 1e30, so the vector between the points would wrongly be parallel to (1, 1, 1).
+        // The vector leads from a near point to a very far one. The difference of the points must
+        // not be rounded. In `f64`, 1e30 − 0.1 and 1e30 − 0.2 are both 1e30, so the vector between
+        // the points would wrongly be parallel to (1, 1, 1).
         let far = DVec3::new(1e30, 1e30, 1e30);
         let near = DVec3::new(0.1, 0.1, 0.2);
         assert!(!cross_is_zero(DVec3::ONE, near, far));

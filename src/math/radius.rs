@@ -50,7 +50,7 @@ impl Radius for f64 {
     fn scaled(self, exponent: i32) -> Self {
         match exponent {
             // In this range, the power of two is a normal number, so the product equals the result
-            // of `ldexp` and is faster.
+            // of `ldexp`. The product is faster.
             -1022..=1023 => self * f64::from_bits(((exponent + 1023) as u64) << 52),
             _ => libm::ldexp(self, exponent),
         }

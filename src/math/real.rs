@@ -70,8 +70,8 @@ pub const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
 /// Returns the floor of `x`, the greatest integer that is not greater than `x`. Requires |x| <
 /// 2^63.
 ///
-/// It replaces `f64::floor`, which is a function call on targets whose baseline has no instruction
-/// for rounding down.
+/// This function replaces `f64::floor`, which is a function call on targets whose baseline has no
+/// instruction for rounding down.
 #[inline]
 pub fn floor(x: f64) -> f64 {
     let towards_zero = x as i64 as f64;
@@ -146,9 +146,9 @@ impl Real for f64 {
     }
     #[inline]
     fn floor(&self) -> (Self, bool) {
-        /// Least absolute value at which every `f64` is an even integer: 2^53, because an `f64` has
-        /// a significand of 53 bits. Such a number may not fit into an `i64`, so it is not
-        /// converted to one.
+        /// Absolute value from which on every `f64` is an even integer: 2^53, because an `f64` has
+        /// a significand of 53 bits. A larger number may not fit into an `i64`, so it is not
+        /// converted.
         const ALL_EVEN: f64 = (1u64 << 53) as f64;
         let floor = f64::floor(*self);
         (floor, floor.abs() < ALL_EVEN && floor as i64 & 1 == 1)

@@ -100,6 +100,10 @@ fn by_series(angle: Angle) -> (Ball<Double>, Ball<Double>) {
 
 fn sin_cos_degrees(degrees: f64) -> (Ball<Double>, Ball<Double>) {
     let (rest, quarters) = reduce_degrees(degrees);
+    if rest == 0.0 {
+        // Most scenes have no other angles. The constants, which take time, are then not computed.
+        return add_quarter_turns((Ball::exact(0.0), Ball::exact(1.0)), quarters);
+    }
     let rest = Ball::exact(rest) * &CONSTANTS.radians_per_degree;
     add_quarter_turns(series(&rest), quarters)
 }

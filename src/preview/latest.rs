@@ -16,9 +16,9 @@ use crate::lock::{lock, unpoisoned};
 pub struct Latest<T> {
     state: Mutex<SlotState<T>>,
     news: Condvar,
-    /// Whether the value that was taken last is outdated, because a newer one is in the slot or the
-    /// slot is closed. It is written only while `state` is locked, so that it always agrees with
-    /// `state`.
+    /// Whether work on the value that was last taken from the slot should stop, because a newer
+    /// value is in the slot or the slot is closed. The flag is written only while `state` is
+    /// locked, so that it always agrees with `state`.
     stale: AtomicBool,
 }
 
@@ -55,7 +55,7 @@ impl<T> Latest<T> {
     }
 
     /// Waits for a value as [`take`](Self::take) does, and calls `idle` after each `pause` of
-    /// waiting.
+    /// waiting. Returns `None` if the slot is closed.
     pub fn take_while(&self, pause: Duration, mut idle: impl FnMut()) -> Option<T> {
         let mut state = lock(&self.state);
         loop {

@@ -124,9 +124,10 @@ struct Watcher<R> {
     /// File names whose events concern the watched file: its own name and, for a symbolic link, the
     /// name of the link's target.
     names: Vec<OsString>,
-    /// Time, length and identity of the file when it was last read.
+    /// Time, length and identity of the file when it was last read; `None` if they were unknown.
     stamp: Option<Stamp>,
-    /// Content that was last read, or the message of the error that prevented reading.
+    /// Content that was last read, or the message of the error that prevented reading. `None`
+    /// before the first reading.
     last_read: Option<Result<Vec<u8>, String>>,
 }
 

@@ -38,14 +38,14 @@ impl ExactBoard {
         Self { across, below }
     }
 
-    /// Integrates the board's sign, +1 on even and −1 on odd squares, over a convex polygon. The
-    /// denominator `below` must be positive on the polygon.
+    /// Integrates the board's sign, +1 on even and −1 on odd squares, over a convex polygon with
+    /// corners in `f64`. The denominator `below` must be positive on the polygon.
     pub fn integral(&self, polygon: &[DVec2]) -> N {
         self.integral_of(polygon.iter().copied().map(point).collect())
     }
 
-    /// Integrates the board's sign, +1 on even and −1 on odd squares, over a convex polygon. The
-    /// denominator `below` must be positive on the polygon.
+    /// Integrates the board's sign, +1 on even and −1 on odd squares, over a convex polygon with
+    /// corners of any precision. The denominator `below` must be positive on the polygon.
     pub fn integral_of(&self, polygon: Vec<Point>) -> N {
         let mut sum = N::ZERO;
         self.strips(0, polygon, &mut |row, strip| {

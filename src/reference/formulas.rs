@@ -113,8 +113,8 @@ pub fn crossings(shape: &Shape, eye: DVec3, d: DVec3, epsilon: f64) -> Option<[f
 }
 
 /// Intersects the line `eye` + t·`d` with a sphere. Returns both values of t, the smaller first, or
-/// `None` if the line misses the sphere. They are the roots of a quadratic equation a·t² + b·t + c
-/// = 0.
+/// `None` if the line misses the sphere. The values are the roots of a quadratic equation a·t² +
+/// b·t + c = 0.
 fn sphere(sphere: &Sphere, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     let f = eye - sphere.center;
     let a = d.dot(d);

@@ -1,5 +1,5 @@
-//! Checks the error bounds of a computation: no error may exceed its bound, and the largest errors
-//! must come near to theirs, so that the bounds are not needlessly large as a whole.
+//! Checks the error bounds of a computation: no error may exceed its bound. The largest errors must
+//! also come near to their bounds, because otherwise the bounds would be needlessly large.
 //!
 //! A bound adds up the rounding errors of a computation as if each had its greatest possible size
 //! and all had the same sign. With n independent roundings, the actual error is typically smaller
@@ -13,7 +13,8 @@ use std::fmt::Debug;
 /// the ratio cannot be close to 1.
 const MOST: f64 = 100.0;
 
-/// Minimum number of errors on which a check of an error bound is based.
+/// Minimum number of errors on which a check of an error bound is based. With too few errors, all
+/// of them may be far below their bounds by chance.
 const FEWEST: usize = 8;
 
 /// Errors of many computed values, to check that their error bounds are not needlessly large.

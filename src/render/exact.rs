@@ -11,7 +11,7 @@ use crate::{
     exact::{ExactPixel, Integrator},
     film::{self, Encoder, Film},
     lock::lock,
-    threads::{self, prelude::*},
+    threads,
     tracer::{GRID, World},
 };
 
@@ -102,51 +102,60 @@ pub fn render_numbers<P: film::Pixel, const N: usize>(
         bounds: vec![0f32; part.pixels() as usize],
         certain: 0,
     });
-    let encoder = Encoder::default();
-    threads::install(control.threads, || {
-        tiles(part, TILE, control).par_bridge().for_each(|tile| {
-            let Some(pixels) = integrator.pixels(tile, control.cancel) else {
-                return;
-            };
-            also(tile, &pixels);
-            let channels = |pixel: &ExactPixel<N>| [0, 1, 2].map(|i| pixel.mean[i]);
-            let bounds: Vec<f32> = pixels
-                .iter()
-                .map(|pixel| match pixel.bound {
-                    0.0 => 0.0,
-                    // The bound is rounded up to an `f32`. It need not exceed 1, because light is
-                    // between 0 and 1.
-                    bound => (bound as f32).next_up().min(1.0),
-                })
-                .collect();
-            // Most pixels have the same colour as the pixel before, so the result of the last
-            // conversion is stored and used again.
-            let (mut before, mut last) = ([0.0; 3], P::of([0.0; 3], &encoder));
-            let means: Vec<P> = pixels
-                .iter()
-                .map(|pixel| {
-                    let mean = channels(pixel);
-                    if mean != before {
-                        (before, last) = (mean, P::of(mean, &encoder));
-                    }
-                    last
-                })
-                .collect();
-            let is_certain = |(pixel, bound): &(&ExactPixel<N>, &f32)| {
-                P::is_certain(channels(pixel), f64::from(**bound), &encoder)
-            };
-            let certain = pixels.iter().zip(&bounds).filter(is_certain).count();
-            let mut exact = lock(&exact);
-            exact.film.put(tile.within(part), &means);
-            let rows = bounds.chunks_exact(tile.width as usize);
-            for (y, row) in (tile.y..).zip(rows) {
-                let start = part.index(tile.x, y);
-                exact.bounds[start..start + row.len()].copy_from_slice(row);
+    let encoder = Encoder::shared();
+    let compute = |tile: Area| {
+        let Some(pixels) = integrator.pixels(tile, control.cancel) else {
+            return;
+        };
+        also(tile, &pixels);
+        let mut means = Vec::with_capacity(pixels.len());
+        let mut bounds = Vec::with_capacity(pixels.len());
+        let mut certain = 0;
+        // Most pixels are equal to the pixel before, so the result of the last conversion is stored
+        // and used again.
+        let (mut before, mut last) = (None, (P::default(), 0.0, true));
+        for pixel in &pixels {
+            if before != Some(pixel) {
+                (before, last) = (Some(pixel), convert(pixel, encoder));
             }
-            exact.certain += certain as u64;
-            drop(exact);
-            (control.progress)(tile.pixels());
-        });
-    })?;
+            let (mean, bound, is_certain) = last;
+            means.push(mean);
+            bounds.push(bound);
+            certain += u64::from(is_certain);
+        }
+        let mut exact = lock(&exact);
+        exact.film.put(tile.within(part), &means);
+        let rows = bounds.chunks_exact(tile.width as usize);
+        for (y, row) in (tile.y..).zip(rows) {
+            let start = part.index(tile.x, y);
+            exact.bounds[start..start + row.len()].copy_from_slice(row);
+        }
+        exact.certain += certain;
+        drop(exact);
+        (control.progress)(tile.pixels());
+    };
+    threads::for_each(
+        control.threads,
+        tiles(part, TILE, control),
+        || (),
+        |(), tile| compute(tile),
+    )?;
     finished(exact, control)
+}
+
+/// Returns the pixel's mean as it is stored in a film, the pixel's bound, and whether all colours
+/// within the bound are stored as the same value.
+fn convert<P: film::Pixel, const N: usize>(
+    pixel: &ExactPixel<N>,
+    encoder: &Encoder,
+) -> (P, f32, bool) {
+    let mean = [0, 1, 2].map(|i| pixel.mean[i]);
+    let bound = match pixel.bound {
+        0.0 => 0.0,
+        // The bound is rounded up to an `f32`. It need not exceed 1, because light is between 0
+        // and 1.
+        bound => (bound as f32).next_up().min(1.0),
+    };
+    let is_certain = P::is_certain(mean, f64::from(bound), encoder);
+    (P::of(mean, encoder), bound, is_certain)
 }

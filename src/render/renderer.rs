@@ -190,9 +190,9 @@ impl<P: film::Pixel> Renderer<'_, P> {
         } = tally;
         let vectors = match trace {
             Trace::Batched(..) if some.end - some.start >= WIDE_SAMPLES => SimdWidth::Widest,
-            // Otherwise, the positions are computed with the vectors that every processor has. Wide
-            // vectors take longer for few samples, and would also slow down the tracing of samples
-            // one by one that follows.
+            // If there are few samples, or if they are traced one by one, their positions are
+            // computed with the vectors that every processor has. Wide vectors take longer for few
+            // samples, and would also slow down tracing one by one.
             _ => SimdWidth::Baseline,
         };
         self.sampling.place(vectors, [x, y], samples, some, points);
@@ -225,13 +225,13 @@ impl<P: film::Pixel> Renderer<'_, P> {
 /// Method of tracing the samples of a pixel.
 #[derive(Clone, Copy)]
 enum Trace<'a> {
-    /// Many samples at a time, against the objects that may be seen in the pixel. The second value
-    /// describes a checkerboard's squares in the pixel. It is `None` if other objects may be seen
-    /// too, or if the squares are not known.
+    /// Traces many samples at a time, against the objects that may be seen in the pixel. The second
+    /// value describes a checkerboard's squares in the pixel. It is `None` if other objects may be
+    /// seen too, or if the squares are not known.
     Batched(&'a [VisibilityCandidate], Option<&'a CheckerPixel>),
-    /// One sample at a time, against the objects that may be seen in the pixel.
+    /// Traces one sample at a time, against the objects that may be seen in the pixel.
     AmongCandidates(&'a [VisibilityCandidate]),
-    /// One sample at a time, against these objects near the pixel. `None` stands for the objects
-    /// that the quadtree of the picture lists for each sample's ray.
+    /// Traces one sample at a time, against these objects near the pixel. With `None`, the
+    /// picture's quadtree lists the objects for each sample's ray.
     AmongNearby(Option<&'a [BoundedObject]>),
 }

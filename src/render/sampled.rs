@@ -14,7 +14,7 @@ use crate::{
     film::{self, Encoder, Film},
     lock::lock,
     sampling::Sampling,
-    threads::{self, prelude::*},
+    threads,
     tracer::{GRID, Quartering, Scratch, World},
 };
 
@@ -34,30 +34,28 @@ pub(super) fn render_as<P: film::Pixel>(
     let film = Mutex::new(Film::new(part.width, part.height)?);
     let colors = world.palette().iter();
     let colors: Vec<_> = colors.map(|color| color.to_linear()).collect();
-    let encoder = Encoder::default();
-    let shown: Vec<_> = colors.iter().map(|&light| P::of(light, &encoder)).collect();
+    let encoder = Encoder::shared();
+    let shown: Vec<_> = colors.iter().map(|&light| P::of(light, encoder)).collect();
     let renderer = Renderer {
         world,
         sampling,
         colors: &colors,
         shown: &shown,
-        encoder: &encoder,
+        encoder,
         control,
         quartering: Quartering::for_samples(world, sampling.mean_count()),
     };
     let side = tile_side(sampling);
-    threads::install(control.threads, || {
-        tiles(part, side, control).par_bridge().for_each_init(
-            || (PixelTally::new(colors.len()), Scratch::default()),
-            |(tally, scratch), tile| {
-                let Some(pixels) = renderer.tile(tile, tally, scratch) else {
-                    return;
-                };
-                let mut film = lock(&film);
-                film.put(tile.within(part), &pixels);
-            },
-        );
-    })?;
+    threads::for_each(
+        control.threads,
+        tiles(part, side, control),
+        || (PixelTally::new(colors.len()), Scratch::default()),
+        |(tally, scratch), tile| {
+            if let Some(pixels) = renderer.tile(tile, tally, scratch) {
+                lock(&film).put(tile.within(part), &pixels);
+            }
+        },
+    )?;
     finished(film, control)
 }
 

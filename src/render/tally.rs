@@ -35,8 +35,9 @@ impl<P> PixelTally<P> {
 pub(super) struct Counts {
     /// The number of samples for each slot (index) of the palette of colours.
     of: Vec<u64>,
-    /// Palette slots (indices of colours) whose count is not 0, in any order. Only these counts are
-    /// reset afterwards, because a palette may be long, while a pixel shows few of its colours.
+    /// Palette slots (indices of colours) whose count is not 0, in any order. After each pixel,
+    /// only these counts are reset, because a palette may be long, while a pixel shows few of its
+    /// colours.
     seen: Vec<usize>,
 }
 

@@ -5,8 +5,9 @@
 //! random number differs from p decides whether it is below. Each digit decides about half of the
 //! trials that are still undecided, and only the number of decided trials has to be drawn. This
 //! number is the number of heads of fair coins, one coin for each undecided trial. For few coins,
-//! random bits are counted. For many, the number is drawn by transformed rejection (BTRS of Hörmann
-//! 1993, "The generation of binomial random variates"), exact except for the rounding of `f64`.
+//! random bits are counted. For many coins, the number is drawn by transformed rejection (BTRS of
+//! Hörmann 1993, "The generation of binomial random variates"), which is exact except for the
+//! rounding of `f64`.
 //!
 //! The binomial distribution of `rand_distr` is not used: it calls the platform's `powf` and `ln`,
 //! whose last bits differ between systems.
@@ -148,9 +149,9 @@ mod tests {
                 let step = ln_weight(k + 1.0, n) - ln_weight(k, n);
                 let expected = libm::log((n - k) / (k + 1.0));
                 // `limit` bounds the error of `step`. Its first term covers rounding errors: a
-                // weight is at most n·ln 2/2 and is computed with a few roundings. Its second term
-                // covers the first term of Stirling's series that `ln_weight` omits, 1/(1260·k⁵),
-                // which changes by less than 1e-13 from k to k + 1.
+                // value of `ln_weight` is at most n·ln 2/2 and is computed with a few roundings.
+                // Its second term covers the first term of Stirling's series that `ln_weight`
+                // omits, 1/(1260·k⁵), which changes by less than 1e-13 from k to k + 1.
                 let limit = 4.0 * f64::EPSILON * n + 1e-13;
                 assert!(
                     (step - expected).abs() < limit,

@@ -54,7 +54,7 @@ impl Halton {
     }
 }
 
-/// Returns the number i mirrored in base 3: its digits in reverse order behind the radix point
+/// Returns the number i mirrored in base 3: its digits in reverse order after the radix point
 /// (φ₃(i), the radical inverse). The result is in units of 2^−64 and rounded up. Requires i < 3^40.
 pub fn radical_inverse_3(i: u64) -> u64 {
     // The mirrored digits are collected as a whole number, which is divided once at the end.

@@ -57,9 +57,9 @@ impl Hammersley {
         }
         let least = self.columns.least();
         let place = scale(within, least);
-        // All points get the same place within their columns. In a column of `least` places, this
-        // is the place with the index `place`. A column may also have `least` + 1 places. The index
-        // is then `place` + `more`, where `more` is 0 or 1.
+        // Every point gets the same place within its column. In a column of `least` places, the
+        // index of this place is `place`. In a column of `least` + 1 places, it is `place` +
+        // `more`, where `more` is 0 or 1.
         let more = scale(within, least + 1) - place;
         let turned = &self.turned[(columns + range.start) as usize..];
         for (x, column) in x.iter_mut().zip(turned) {

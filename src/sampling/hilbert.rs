@@ -2,10 +2,9 @@
 //!
 //! The curve fills the smallest square that contains the picture and whose side is a power of two
 //! (Hilbert 1891). A pixel's rank is the number of the picture's pixels that come before it on the
-//! curve. This number is summed quadrant by quadrant. Pixels of a square whose side is a power of
-//! two, and whose place is a multiple of its side, follow each other without a gap. Samples that
-//! are distributed evenly along the curve are therefore distributed evenly in both directions of
-//! the picture, too.
+//! curve. This number is summed quadrant by quadrant. A quadrant, and each quadrant of a quadrant,
+//! is visited completely before the next one. Samples that are distributed evenly along the curve
+//! are therefore distributed evenly in both directions of the picture, too.
 
 use crate::area::Area;
 

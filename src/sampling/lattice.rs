@@ -74,6 +74,19 @@ impl Stratum {
         self.0 & 1
     }
 
+    /// Returns the stratum's bits as a floating-point number, which stands for no quantity. A list
+    /// of offsets can so store strata until an offset is chosen in each of them.
+    #[inline(always)]
+    pub fn to_f64(self) -> f64 {
+        f64::from_bits(self.0)
+    }
+
+    /// Returns the stratum whose bits [`Self::to_f64`] returned.
+    #[inline(always)]
+    pub fn from_f64(bits: f64) -> Self {
+        Self(bits.to_bits())
+    }
+
     /// Chooses an offset in the stratum by 64 random bits. `least` is the minimum number of places
     /// in a stratum, ⌊2^53/n⌋.
     #[inline(always)]
@@ -111,6 +124,25 @@ impl Strata {
     /// Returns the minimum number of places in a stratum, ⌊2^53/n⌋; some strata have one more.
     pub fn least(&self) -> u64 {
         self.least
+    }
+
+    /// Replaces each stratum in a list, stored by [`Stratum::to_f64`], by an offset in this
+    /// stratum. The offset is chosen by 64 random bits.
+    #[inline(always)]
+    pub fn choose_all(&self, strata: &mut [f64], random: impl Iterator<Item = u64>) {
+        let chosen = strata.iter_mut().zip(random);
+        if self.n.is_power_of_two() {
+            // All strata have 2^53/n places, so the highest bits are the place. The shift is done
+            // in two parts, because a single shift by 64 bits, for n = 2^53, would overflow.
+            let unused = u64::BITS - 1 - self.least.ilog2();
+            for (out, bits) in chosen {
+                *out = offset(Stratum::from_f64(*out).start() + (bits >> 1 >> unused));
+            }
+        } else {
+            for (out, bits) in chosen {
+                *out = Stratum::from_f64(*out).choose(self.least, bits);
+            }
+        }
     }
 
     /// Chooses an offset in the stratum with the index `i` by 64 random bits. Strata are the n

@@ -71,8 +71,8 @@ pub struct Sampling {
     /// Number of pixels that have one sample more than the minimum number.
     extra: u64,
     /// Two arrangements of points in a pixel: one of `count` points, and one of `count` + 1. For
-    /// the method `scatter`, both consist of independent random points, of which there can be any
-    /// number.
+    /// the method `scatter`, both arrangements consist of independent random points, and `count`
+    /// does not limit their number.
     patterns: Box<[PointPattern; 2]>,
 }
 
@@ -99,7 +99,7 @@ impl Sampling {
     /// Panics if the picture has no pixels.
     pub fn new(sampler: &Sampler, width: u32, height: u32) -> Self {
         // The key depends on the method's position in the enum `Method`. So the positions must not
-        // change, or else all pictures would.
+        // change, because all sampled pictures would change with them.
         let key = Key::new(sampler.seed, sampler.method as u64);
         let pixels = u64::from(width) * u64::from(height);
         let total = match sampler.count {

@@ -18,11 +18,6 @@ use super::{
     shuffle::{EMPTY_BUFFER, Shuffle},
 };
 
-/// Number of points that are placed at a time. Most pixels have at most this many points. With a
-/// larger number, small pixels would take longer, because a buffer of this length is cleared for
-/// every pixel.
-const BATCH: usize = 16;
-
 /// A grid of cells in a pixel, and the division of the pixel's sides into n intervals.
 #[derive(Debug)]
 pub struct MultiJittered {
@@ -30,6 +25,9 @@ pub struct MultiJittered {
     rows: u64,
     /// Division of the pixel's width into n equal intervals. The height is divided in the same way.
     strata: Strata,
+    /// The pixel's n columns in another order: first the first of each column of the grid, then the
+    /// second of each, and so on. Empty if there are too many columns to be stored.
+    cell_columns: Vec<Stratum>,
 }
 
 impl MultiJittered {
@@ -46,10 +44,14 @@ impl MultiJittered {
     }
 
     fn with_rows(n: u64, rows: u64) -> Self {
+        let (columns, strata) = (n / rows, Strata::new(n));
+        let stored = strata.stored().unwrap_or_default();
+        let stored = (0..rows as usize).flat_map(|j| stored.iter().skip(j).step_by(rows as usize));
         Self {
-            columns: n / rows,
+            columns,
             rows,
-            strata: Strata::new(n),
+            cell_columns: stored.copied().collect(),
+            strata,
         }
     }
 
@@ -61,65 +63,102 @@ impl MultiJittered {
     /// Places the points whose indices are in `range`; points are counted row by row. Writes their
     /// offsets from the pixel's centre to the two lists of coordinates in `out`.
     #[inline(always)]
-    pub fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
+    pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let mut buffers = [EMPTY_BUFFER; 2];
         let [sigma, tau] = &mut buffers;
         let sigma = Shuffle::new(self.rows, key.part(0), sigma);
         let tau = Shuffle::new(self.columns, key.part(1), tau);
-        match (sigma.stored(), tau.stored(), self.strata.stored()) {
-            (Some(sigma), Some(tau), Some(strata)) => {
-                let in_row = |j: u64| u64::from(sigma[j as usize]);
-                let in_column = |i: u64| u64::from(tau[i as usize]);
-                let stratum = |i: u64| strata[i as usize];
-                self.place_with(key, range.start, in_row, in_column, stratum, out);
-            }
-            _ => {
-                let (in_row, in_column) = (|j| sigma.get(j), |i| tau.get(i));
-                let stratum = |i| self.strata.get(i);
-                self.place_with(key, range.start, in_row, in_column, stratum, out);
-            }
+        // First, a column and a row are assigned to each point, one row of the grid after the
+        // other. The lists of coordinates store them until the place in the column or row is
+        // chosen: a buffer would have to be cleared.
+        let (mut i, mut j) = (range.start % self.columns, range.start / self.columns);
+        let (mut columns, mut rows) = (&mut *x, &mut *y);
+        while !columns.is_empty() {
+            let part = columns.len().min((self.columns - i) as usize);
+            let (column_part, column_rest) = columns.split_at_mut(part);
+            let (row_part, row_rest) = rows.split_at_mut(part);
+            self.assign([i, j], &sigma, &tau, [column_part, row_part]);
+            (columns, rows) = (column_rest, row_rest);
+            (i, j) = (0, j + 1);
+        }
+        // After the columns and rows of the points are known, a random place is chosen in each
+        // column and row, in loops that the compiler can vectorize.
+        for (axis, out) in [(0, x), (1, y)] {
+            self.strata
+                .choose_all(out, key.series(2 * range.start + axis, 2));
         }
     }
 
+    /// Assigns a column and a row to each of some points in one row of the grid. `i` and `j` are
+    /// the first point's column and row in the grid.
     #[inline(always)]
-    fn place_with(
-        &self,
-        key: Key,
-        start: u64,
-        sigma: impl Fn(u64) -> u64,
-        tau: impl Fn(u64) -> u64,
-        stratum: impl Fn(u64) -> Stratum,
-        [x, y]: [&mut [f64]; 2],
-    ) {
-        let least = self.strata.least();
-        let (mut i, mut j) = (start % self.columns, start / self.columns);
-        let mut index = 2 * start;
-        let mut chosen = [[Stratum::default(); BATCH]; 2];
-        for (x, y) in x.chunks_mut(BATCH).zip(y.chunks_mut(BATCH)) {
-            // First, a column and a row are assigned to each point, one point after the other.
-            let [columns, rows] = &mut chosen;
-            let mut points = columns.iter_mut().zip(rows).take(x.len());
-            while points.len() > 0 {
-                let first_column = sigma(j);
-                let first_row = j * self.columns;
-                let part = points.len().min((self.columns - i) as usize);
-                for (column, row) in points.by_ref().take(part) {
-                    *column = stratum(i * self.rows + first_column);
-                    *row = stratum(first_row + tau(i));
-                    i += 1;
+    fn assign(&self, [i, j]: [u64; 2], sigma: &Shuffle, tau: &Shuffle, [x, y]: [&mut [f64]; 2]) {
+        let first_column = sigma.get(j) * self.columns + i;
+        let first_row = j * self.columns;
+        match (tau.stored(), self.strata.stored()) {
+            (Some(tau), Some(strata)) => {
+                let columns = &self.cell_columns[first_column as usize..];
+                for (x, column) in x.iter_mut().zip(columns) {
+                    *x = column.to_f64();
                 }
-                if i == self.columns {
-                    (i, j) = (0, j + 1);
+                let rows = &strata[first_row as usize..];
+                for (y, &row) in y.iter_mut().zip(&tau[i as usize..]) {
+                    *y = rows[usize::from(row)].to_f64();
                 }
             }
-            // After the columns and rows of the points are known, a random place is chosen in each
-            // column and row, in loops that the compiler can vectorize.
-            for (axis, (out, chosen)) in [(0, (x, &chosen[0])), (1, (y, &chosen[1]))] {
-                for (point, (out, stratum)) in (0..).zip(out.iter_mut().zip(chosen)) {
-                    *out = stratum.choose(least, key.bits(index + axis + 2 * point));
+            _ => {
+                for (i, (x, y)) in (i..).zip(x.iter_mut().zip(y)) {
+                    *x = self.strata.get(i * self.rows + sigma.get(j)).to_f64();
+                    *y = self.strata.get(first_row + tau.get(i)).to_f64();
                 }
             }
-            index += 2 * BATCH as u64;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_placed_together_are_those_of_the_definition() {
+        for n in [
+            1, 2, 3, 4, 7, 16, 46, 64, 65, 97, 100, 256, 1000, 4096, 5000,
+        ] {
+            let grids = [MultiJittered::new(n), MultiJittered::n_rooks(n)];
+            for (seed, grid) in (0..10).flat_map(|seed| grids.iter().map(move |grid| (seed, grid)))
+            {
+                let key = Key::new(seed, 5).part(seed);
+                let (mut x, mut y) = (vec![0.0; n as usize], vec![0.0; n as usize]);
+                // Two calls place all points, also if the first ends within a row of the grid.
+                let split = n * 2 / 5;
+                let (first, second) = (split as usize, n as usize);
+                grid.place(key, 0..split, [&mut x[..first], &mut y[..first]]);
+                grid.place(
+                    key,
+                    split..n,
+                    [&mut x[first..second], &mut y[first..second]],
+                );
+                let mut buffers = [EMPTY_BUFFER; 2];
+                let [sigma, tau] = &mut buffers;
+                let sigma = Shuffle::new(grid.rows, key.part(0), sigma);
+                let tau = Shuffle::new(grid.columns, key.part(1), tau);
+                let strata = Strata::new(n);
+                for point in 0..n {
+                    let (i, j) = (point % grid.columns, point / grid.columns);
+                    let column = i * grid.rows + sigma.get(j);
+                    let row = j * grid.columns + tau.get(i);
+                    let place = [
+                        strata.choose(column, key.bits(2 * point)),
+                        strata.choose(row, key.bits(2 * point + 1)),
+                    ];
+                    assert_eq!(
+                        [x[point as usize], y[point as usize]],
+                        place,
+                        "{point} of {n}"
+                    );
+                }
+            }
         }
     }
 }

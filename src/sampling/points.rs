@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 
-/// Number of `f64` in the widest SIMD vectors. Lists of coordinates are padded to a multiple of it.
+/// Number of `f64` in the widest SIMD vectors. Lists of coordinates are padded to a multiple of
+/// this number.
 const LANES: usize = 8;
 
 /// Sample points of a pixel, stored as one list per coordinate, so that loops over the points can

@@ -3,9 +3,9 @@
 use super::rng::Key;
 
 /// Maximum length of a permutation whose entries are stored, in 8 KiB. Such a permutation is chosen
-/// with equal probability among all. The entries of a longer permutation are computed one by one,
-/// by a hash, which does not choose all permutations with equal probability. A larger maximum would
-/// need more memory. With a smaller maximum, the hash would be used more often.
+/// among all permutations with equal probability. The entries of a longer permutation are computed
+/// one by one by a hash, which makes some permutations more probable than others. A larger maximum
+/// would need more memory. With a smaller maximum, the hash would be used more often.
 const MAX_STORED: u64 = 1 << 12;
 
 /// Maximum length of a permutation that is stored in a [`Buffer`] instead of allocated memory. With

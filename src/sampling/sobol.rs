@@ -24,6 +24,9 @@ use super::{lattice, rng::Key};
 /// levels have 2^6 − 1 nodes, for which the 64 bits of a hash are just enough.
 const LEVELS: u32 = 6;
 
+/// Number of levels of the tree that are looked up at a time, in [`SCRAMBLED`].
+const BLOCK: u32 = 3;
+
 /// Maximum number of points whose bits before the scrambling are stored. Any two of these points
 /// differ in one of their first 12 bits, so that two hashes, of six levels each, scramble a point.
 /// For more points, the bits are computed point by point.
@@ -37,20 +40,21 @@ pub struct Sobol {
     depth: u32,
     /// The `depth` highest bits of both coordinates of each point, before the scrambling. Empty for
     /// more than 4096 points.
-    tops: Vec<[u16; 2]>,
+    tops: [Vec<u16>; 2],
 }
 
 impl Sobol {
     /// Prepares the first `n` points of the Sobol' sequence.
     pub fn new(n: u64) -> Self {
         let depth = u64::BITS - (n - 1).leading_zeros();
-        let top = |fraction: u64| high_bits(fraction, depth) as u16;
         let stored = if n <= MAX_STORED { n } else { 0 };
+        let tops = |coordinate: fn(u64) -> u64| {
+            let points = (0..stored).map(|i| high_bits(coordinate(i), depth) as u16);
+            points.collect()
+        };
         Self {
             depth,
-            tops: (0..stored)
-                .map(|i| [top(i.reverse_bits()), top(pascal(i).reverse_bits())])
-                .collect(),
+            tops: [tops(first), tops(second)],
         }
     }
 
@@ -62,33 +66,34 @@ impl Sobol {
             Owen::new(key.part(0), self.depth),
             Owen::new(key.part(1), self.depth),
         ];
-        if !self.tops.is_empty() {
-            let tops = &self.tops[range.start as usize..range.end as usize];
-            // `at_leaves` first clears a list of a fixed length. The length is chosen by the number
-            // of points, because a shorter list takes less time.
-            return match self.depth {
-                0..=6 => at_leaves::<{ 1 << 6 }>(&axes, tops, [x, y]),
-                7..=9 => at_leaves::<{ 1 << 9 }>(&axes, tops, [x, y]),
-                _ => at_leaves::<{ 1 << 12 }>(&axes, tops, [x, y]),
-            };
+        if !self.tops[0].is_empty() {
+            for ((axis, tops), out) in axes.iter().zip(&self.tops).zip([x, y]) {
+                let tops = &tops[range.start as usize..range.end as usize];
+                // `place` first clears a list of a fixed length. The length is chosen by the number
+                // of points, because a shorter list takes less time.
+                match self.depth {
+                    0..=6 => axis.place::<{ 1 << 6 }>(tops, out),
+                    7..=9 => axis.place::<{ (1 << 9) + (1 << BLOCK) }>(tops, out),
+                    _ => axis.place::<{ (1 << 12) + (1 << BLOCK) }>(tops, out),
+                }
+            }
+            return;
         }
         for (i, (x, y)) in range.zip(x.iter_mut().zip(y)) {
-            *x = lattice::offset_of_bits(axes[0].scramble(i.reverse_bits()));
-            *y = lattice::offset_of_bits(axes[1].scramble(pascal(i).reverse_bits()));
+            *x = lattice::offset_of_bits(axes[0].scramble(first(i)));
+            *y = lattice::offset_of_bits(axes[1].scramble(second(i)));
         }
     }
 }
 
-/// Writes the offsets of points to `x` and `y`. `tops` contains the highest bits of each point's
-/// two coordinates. A coordinate has at most `MOST` different values of these bits. The offset for
-/// each value is computed once and then looked up.
-#[inline(always)]
-fn at_leaves<const MOST: usize>(axes: &[Owen; 2], tops: &[[u16; 2]], [x, y]: [&mut [f64]; 2]) {
-    let leaves = [axes[0].leaves::<MOST>(), axes[1].leaves::<MOST>()];
-    for (top, (x, y)) in tops.iter().zip(x.iter_mut().zip(y)) {
-        *x = leaves[0][usize::from(top[0])];
-        *y = leaves[1][usize::from(top[1])];
-    }
+/// Returns the first coordinate of point `i`, as a fraction of the pixel's side in units of 2^−64.
+fn first(i: u64) -> u64 {
+    i.reverse_bits()
+}
+
+/// Returns the second coordinate of point `i`, as a fraction of the pixel's side in units of 2^−64.
+fn second(i: u64) -> u64 {
+    pascal(i).reverse_bits()
 }
 
 /// Multiplies the bits of a number by Pascal's triangle modulo 2: bit j of the result is the sum,
@@ -112,51 +117,58 @@ struct Owen {
     /// Further hashes decide the levels below.
     levels: u32,
     /// Scrambled value of each combination of the first `levels` bits.
-    top: [u8; 1 << LEVELS],
+    top: [u16; 1 << LEVELS],
 }
 
 impl Owen {
     fn new(key: Key, depth: u32) -> Self {
         let levels = depth.min(LEVELS);
+        let mut top = [0; 1 << LEVELS];
+        subtree(key.bits(1), levels, 0, &mut top);
         Self {
             key,
             depth,
             levels,
-            top: subtree(key.bits(1), levels),
+            top,
         }
     }
 
-    /// Returns the offset, after scrambling, for each combination of the `depth` highest bits of a
-    /// coordinate. `depth` must be at most 12, so that two hashes suffice for each combination.
+    /// Writes the offsets of points to `out`. `tops` contains the `depth` highest bits of each
+    /// point's coordinate, before the scrambling. There are at most `MOST` combinations of these
+    /// bits, and at most 12 bits, so that two hashes suffice for each combination.
     #[inline(always)]
-    fn leaves<const MOST: usize>(&self) -> [f64; MOST] {
-        let mut prefixes = [0; MOST];
-        match self.depth - self.levels {
-            0 => {
-                for (prefix, &top) in prefixes.iter_mut().zip(&self.top) {
-                    *prefix = u16::from(top);
-                }
-            }
-            below => {
-                let parts = prefixes.chunks_exact_mut(1 << below);
-                for ((part, prefixes), &top) in (1 << self.levels..).zip(parts).zip(&self.top) {
-                    let bottom = subtree(self.key.bits(part), below);
-                    for (prefix, bottom) in prefixes.iter_mut().zip(bottom) {
-                        *prefix = u16::from(top) << below | u16::from(bottom);
-                    }
-                }
-            }
+    fn place<const MOST: usize>(&self, tops: &[u16], out: &mut [f64]) {
+        let mut scrambled = [0; MOST];
+        self.scramble_all(&mut scrambled);
+        // Looking up is a loop of its own, so that the compiler vectorizes the other one. `out`
+        // stores the numbers from one loop to the other, because clearing a buffer would take time.
+        for (out, &top) in out.iter_mut().zip(tops) {
+            *out = f64::from_bits(u64::from(scrambled[usize::from(top)]));
         }
-        let mut leaves = [0.0; MOST];
-        let count = 1 << self.depth;
-        let hashes = (count..2 * count).map(|index| self.key.bits(index));
-        for ((leaf, &prefix), hash) in leaves.iter_mut().zip(&prefixes).zip(hashes) {
+        for (out, &top) in out.iter_mut().zip(tops) {
+            let hash = self.key.bits(1 << self.depth | u64::from(top));
             // The shift is done in two parts, because a single shift by 64 bits, for depth 0, would
             // overflow.
-            let bits = u64::from(prefix) << 1 << (u64::BITS - 1 - self.depth) | hash >> self.depth;
-            *leaf = lattice::offset_of_bits(bits);
+            let top = out.to_bits() << 1 << (u64::BITS - 1 - self.depth);
+            *out = lattice::offset_of_bits(top | hash >> self.depth);
         }
-        leaves
+    }
+
+    /// Scrambles each combination of the `depth` highest bits of a coordinate, in ascending order.
+    #[inline(always)]
+    fn scramble_all<const MOST: usize>(&self, scrambled: &mut [u16; MOST]) {
+        if self.depth <= LEVELS {
+            scrambled[..self.top.len()].copy_from_slice(&self.top);
+            return;
+        }
+        let below = self.depth - LEVELS;
+        let mut flips = [0; 1 << LEVELS];
+        for (part, flips) in (1 << LEVELS..).zip(&mut flips) {
+            *flips = self.key.bits(part);
+        }
+        for (part, (flips, &top)) in flips.into_iter().zip(&self.top).enumerate() {
+            subtree(flips, below, top << below, &mut scrambled[part << below..]);
+        }
     }
 
     /// Scrambles a coordinate. `fraction` and the result are fractions of the pixel's side, in
@@ -183,33 +195,65 @@ impl Owen {
     }
 }
 
-/// Returns the scrambled value of each combination of `levels` bits. A combination is a path from
-/// the root of a binary tree to a leaf. `flips` contains a random bit for each inner node of the
-/// tree: bit 1 for the root, bits 2 and 3 for its children, and so on. If it is set, the bit of the
-/// path at this node is flipped.
+/// Writes the scrambled value of each combination of `levels` bits, at most six, to `out`, with the
+/// bits of `above` before it. Always writes whole blocks of eight, so that numbers after the last
+/// combination may change. A combination is a path from the root of a binary tree to a leaf.
+/// `flips` contains a random bit for each inner node of the tree: bit 1 for the root, bits 2 and 3
+/// for its children, and so on. If a node's bit is set, the bit of the path at this node is
+/// flipped.
 #[inline(always)]
-fn subtree(flips: u64, levels: u32) -> [u8; 1 << LEVELS] {
-    let mut bits = [0; 1 << LEVELS];
-    for level in 0..levels {
-        // Replaces each node by its two children. The last node comes first, so that none is
-        // overwritten before it is read.
-        for node in (0..1 << level).rev() {
-            let scrambled = bits[node] << 1;
-            let flip = (flips >> (1 << level | node) & 1) as u8;
-            (bits[2 * node], bits[2 * node + 1]) = (scrambled | flip, scrambled | (flip ^ 1));
+fn subtree(flips: u64, levels: u32, above: u16, out: &mut [u16]) {
+    let top_levels = levels.saturating_sub(BLOCK);
+    let tops = &SCRAMBLED[top_levels as usize][(flips >> 1 & 127) as usize];
+    let bottoms = &SCRAMBLED[(levels - top_levels) as usize];
+    let blocks = out.chunks_exact_mut(1 << BLOCK).zip(tops);
+    for (part, (out, &top)) in (0..1_u32 << top_levels).zip(blocks) {
+        // The random bits of a block's seven nodes lie in three places, one for each level: nodes
+        // on the same level follow each other.
+        let level = |depth: u32| {
+            let nodes = 1_u32 << depth;
+            flips >> ((nodes << top_levels) + (part << depth)) & ((1 << nodes) - 1)
+        };
+        let nodes = level(0) | level(1) << 1 | level(2) << 3;
+        for (out, &bottom) in out.iter_mut().zip(&bottoms[nodes as usize]) {
+            *out = above | top << BLOCK | bottom;
         }
     }
-    bits
 }
+
+/// Scrambled values of all combinations of up to three bits, a block of eight numbers for each way
+/// to scramble them. The indices are the number of bits and the random bits of the tree's nodes:
+/// bit 0 for the root, bits 1 and 2 for its children, and so on.
+static SCRAMBLED: [[[u16; 1 << BLOCK]; 128]; BLOCK as usize + 1] = {
+    let mut scrambled = [[[0; 1 << BLOCK]; 128]; BLOCK as usize + 1];
+    let mut levels = 1;
+    while levels <= BLOCK {
+        let mut nodes = 0;
+        while nodes < 128 {
+            let mut path = 0;
+            while path < 1 << levels {
+                let value = path ^ flips_along(nodes << 1, path, levels);
+                scrambled[levels as usize][nodes as usize][path as usize] = value as u16;
+                path += 1;
+            }
+            nodes += 1;
+        }
+        levels += 1;
+    }
+    scrambled
+};
 
 /// Returns the random bits of the nodes on a path down a tree. The `levels` bits of `part` describe
 /// the path from the root. `flips` contains a random bit for each node: bit 1 for the root, bits 2
 /// and 3 for its children, and so on.
-fn flips_along(flips: u64, part: u64, levels: u32) -> u64 {
-    (0..levels).fold(0, |found, level| {
+const fn flips_along(flips: u64, part: u64, levels: u32) -> u64 {
+    let (mut found, mut level) = (0, 0);
+    while level < levels {
         let node = 1 << level | part >> (levels - level);
-        found << 1 | (flips >> node & 1)
-    })
+        found = found << 1 | (flips >> node & 1);
+        level += 1;
+    }
+    found
 }
 
 /// Returns the `count` highest bits of a number.
@@ -223,17 +267,18 @@ mod tests {
 
     #[test]
     fn points_placed_together_are_those_placed_one_by_one() {
-        let key = Key::new(7, 5).part(3);
-        for n in [
-            2, 3, 17, 64, 65, 100, 128, 300, 512, 513, 1000, 4095, 4096, 5000,
-        ] {
+        let numbers = [
+            2, 3, 5, 8, 17, 64, 65, 100, 128, 300, 512, 513, 1000, 2048, 4095, 4096, 5000,
+        ];
+        for (seed, n) in (0..20).flat_map(|seed| numbers.map(|n| (seed, n))) {
+            let key = Key::new(seed, 5).part(3);
             let sobol = Sobol::new(n);
-            assert_eq!(sobol.tops.is_empty(), n > MAX_STORED);
+            assert_eq!(sobol.tops[0].is_empty(), n > MAX_STORED);
             let axes = [0, 1].map(|axis| Owen::new(key.part(axis), sobol.depth));
             let (mut x, mut y) = (vec![0.0; n as usize], vec![0.0; n as usize]);
             sobol.place(key, 0..n, [&mut x, &mut y]);
             for (i, place) in (0..n).zip(x.into_iter().zip(y)) {
-                let [a, b] = [i.reverse_bits(), pascal(i).reverse_bits()];
+                let [a, b] = [first(i), second(i)];
                 let [a, b] = [axes[0].scramble(a), axes[1].scramble(b)];
                 let alone = (lattice::offset_of_bits(a), lattice::offset_of_bits(b));
                 assert_eq!(place, alone, "{i} of {n}");

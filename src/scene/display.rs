@@ -1,10 +1,10 @@
 //! Writes a scene as a text, and checks a scene that was made or changed in code.
 //!
 //! The text has a block for each part of the scene, and states every field's value. Numbers are
-//! written with enough digits that reading the text returns exactly the same scene. Most mistakes
-//! of a scene are found by reading its text. Invalid names and numbers that are not finite are
-//! reported while the text is written. Reading the text would not do: it might describe another
-//! scene without any mistake, or cause misleading error messages.
+//! written with enough digits that reading the text returns exactly the same scene. To check a
+//! scene, its text is read, which finds most mistakes. Invalid names and numbers that are not
+//! finite are reported earlier, while the text is written. A text with such a name or number might
+//! be read as another scene without any mistake, or cause misleading error messages.
 
 use std::{collections::HashSet, fmt, sync::Arc};
 
@@ -23,7 +23,7 @@ use crate::{
 };
 
 impl Scene {
-    /// Checks that the scene is one that a text can describe: a radius is more than 0, the camera
+    /// Checks that the scene meets the language's conditions: a radius is more than 0, the camera
     /// does not look at its own eye, names are unique, and so on.
     ///
     /// # Errors

@@ -46,9 +46,9 @@ pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -
         Value::Vector(point) => Some(point),
         _ => None,
     });
-    // Examples are tried at `STEPS` from a given point. The first step is −z, the direction in
-    // which a camera usually looks, i.e. from `eye` to `lookat`. For an example of `eye`, which
-    // lies on the opposite side of `lookat`, the steps are taken in the opposite direction.
+    // Each example that is tried is the sum of a point and a step in `STEPS`. The first step is −z,
+    // the direction in which a camera usually looks, i.e. from `eye` to `lookat`. An example of
+    // `eye` should lie on the opposite side of `lookat`, so the steps are then subtracted.
     let sign = if field.name == CAMERA.eye.name {
         -1.0
     } else {

@@ -3,7 +3,7 @@
 //! In: a block of the syntax tree. Out: the value of each field that the block has, and the
 //! defaults of the other fields.
 
-use std::sync::LazyLock;
+use std::sync::{LazyLock, OnceLock};
 
 use super::eval::literal;
 use crate::{
@@ -86,7 +86,7 @@ impl LoweredBlock<'_> {
     pub fn value<T: FieldValue + Copy>(&self, field: FieldHandle<T>) -> Option<T> {
         let value = match self.given(field) {
             Some(given) => given.value,
-            None => *DEFAULTS.get(self.row.kind as usize)?.get(field.index)?,
+            None => default(self.row, field.index),
         };
         T::from_value(value?)
     }
@@ -114,13 +114,20 @@ impl LoweredBlock<'_> {
     }
 }
 
-/// Default values of all fields, indexed by the kind of block and by the field's position in the
-/// schema's row for this kind.
-static DEFAULTS: LazyLock<Vec<Vec<Option<Value>>>> = LazyLock::new(|| {
-    let default = |field: &FieldRow| match field.preset {
+/// Returns the default value of the field with the index `index` of a kind of block; `None` if it
+/// has none.
+fn default(row: &BlockRow, index: usize) -> Option<Value> {
+    // Default values of all fields, indexed by the kind of block and by the field's position in the
+    // schema's row for this kind. Each is evaluated when it is first needed, because evaluating all
+    // of them takes longer than reading a small scene.
+    static DEFAULTS: LazyLock<Vec<Vec<OnceLock<Option<Value>>>>> = LazyLock::new(|| {
+        let none = |row: &BlockRow| row.fields.iter().map(|_| OnceLock::new()).collect();
+        schema::BLOCKS.iter().map(none).collect()
+    });
+    let field = row.fields.get(index)?;
+    let slot = DEFAULTS.get(row.kind as usize)?.get(index)?;
+    *slot.get_or_init(|| match field.preset {
         Preset::Value(written) => literal(written, field.takes),
         Preset::Required | Preset::Alternative | Preset::Nothing => None,
-    };
-    let defaults = |row: &BlockRow| row.fields.iter().map(default).collect();
-    schema::BLOCKS.iter().map(defaults).collect()
-});
+    })
+}

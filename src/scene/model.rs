@@ -89,13 +89,13 @@ pub enum View {
     Direction(DVec3),
 }
 
-/// Returns the direction that decides what is at the top of the picture if a camera's up vector is
-/// parallel to its view direction: −z, or +y if up is parallel to z.
+/// Returns the direction that determines the top of the picture if a camera's up vector is parallel
+/// to its view direction: −z, or +y if up is parallel to z.
 ///
 /// Let h be the component of this direction that is perpendicular to up. The top of the picture
-/// lies in the direction −h if the camera looks along up, and in the direction h if it looks in the
-/// opposite direction. A camera that looks along h with this up vector, and is then tilted down or
-/// up by 90°, shows the same picture.
+/// points along −h if the camera looks along up, and along h if it looks in the opposite direction.
+/// The picture is the same as if the camera first looked along h and were then tilted up or down by
+/// 90°.
 pub fn level_direction(up: DVec3) -> DVec3 {
     if up.x == 0.0 && up.y == 0.0 {
         DVec3::Y
@@ -178,8 +178,9 @@ impl Object {
         }
     }
 
-    /// Returns the object with the name `name`, and without the indices that it has if `for`
-    /// repeats its block. No other object of the scene may have this name.
+    /// Returns a copy of the object with the name `name`. The copy has no indices, even if the
+    /// object was made by a block that `for` repeats. No other object of the scene may have this
+    /// name.
     #[must_use]
     pub fn named(self, name: impl Into<String>) -> Self {
         Self {

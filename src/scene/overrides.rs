@@ -49,8 +49,8 @@ pub fn read<'s>(
     overrides
 }
 
-/// Splits the argument `text`, such as `camera.roll=30deg`, into the block, if it has one, the name
-/// of the field or `let`, and the offset of the value.
+/// Splits the argument `text`, such as `camera.roll=30deg`, into three parts: the block, or `None`
+/// if the target is a `let`; the name of the field or of the `let`; and the offset of the value.
 ///
 /// # Errors
 ///
@@ -220,7 +220,7 @@ impl<'s> Override<'s> {
 }
 
 /// Returns the row of the field `name` in the language's table. `block` is the kind of the block or
-/// an object's name.
+/// an object's name. Returns `None` if there is no such block or field.
 fn field(block: &str, name: &str, items: &[Item<'_>]) -> Option<&'static schema::FieldRow> {
     let object = || {
         items.iter().find_map(|item| match item {
@@ -238,7 +238,7 @@ fn setting(name: &str) -> Option<&'static schema::BlockRow> {
 }
 
 /// Returns the row of a block's kind in the language's table. A mistyped kind stands for the
-/// nearest one.
+/// nearest one. Returns `None` if the kind is missing, or similar to no other.
 fn row(block: &Block<'_>) -> Option<&'static schema::BlockRow> {
     schema::block_or_nearest(block.kind?.text)
 }

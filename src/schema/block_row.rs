@@ -14,8 +14,8 @@ impl BlockRow {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// Returns the fields that people may mean by the word `written`. It is not the name of a
-    /// field, but people use it by mistake for each of these fields.
+    /// Returns the fields for which people use the word `written` by mistake. The word may stand
+    /// for several fields, so it does not tell which of them is meant.
     pub fn fields_perhaps(&self, written: &str) -> impl Iterator<Item = &'static FieldRow> {
         let fields = self.fields.iter();
         fields.filter(move |field| is_among(written, field.perhaps))
@@ -98,7 +98,7 @@ impl BlockRow {
     }
 
     /// Returns the field named `written`, ignoring case and `_`, or else the field for which people
-    /// use `written` by mistake.
+    /// use `written` by mistake. Returns `None` if there is neither.
     pub fn field_tried(&self, written: &str) -> Option<&'static FieldRow> {
         let find = |words: fn(&FieldRow) -> &'static str| {
             let mut fields = self.fields.iter();
@@ -109,7 +109,7 @@ impl BlockRow {
 
     /// Returns the field that was probably meant by `written`. The field's name is similar to
     /// `written`, or `written` contains the name as a word or at its start: `near` in `near_clip`,
-    /// `eye` in `eyepoint`.
+    /// `eye` in `eyepoint`. Returns `None` if no field fits.
     pub fn nearest_field(&self, written: &str) -> Option<&'static FieldRow> {
         let words = suggest::words(written);
         let starts = |field: &&FieldRow| field.name.len() > 2 && written.starts_with(field.name);

@@ -37,12 +37,12 @@ pub struct BlockRow {
     /// `resolution (640, 480)`. An element consists of such words, separated by spaces, and the
     /// names of the fields.
     pub several: &'static [(&'static str, &'static [&'static str])],
-    /// Sets of words that people use together by mistake, such as `x y z` for the coordinates of a
-    /// centre.
+    /// Groups of words that people use together by mistake, such as `x y z` for the coordinates of
+    /// a centre.
     ///
-    /// The first part of an entry is a list of such sets: `|` separates sets, and a space separates
-    /// words. The second part names the fields that were meant: one field if each word stands for
-    /// one component of its value, or else one field for each word.
+    /// The first part of an entry is a list of groups, such as `x y z|cx cy cz`: `|` separates
+    /// groups, and a space separates words. The second part names the fields that were meant: one
+    /// field if each word stands for one component of its value, or else one field for each word.
     pub parted: &'static [(&'static str, &'static [&'static str])],
     /// Words that people use by mistake for the keyword, separated by spaces.
     pub also_tried: &'static str,

@@ -3,7 +3,7 @@
 use super::types::{Type, Value};
 use crate::math::Angle;
 
-/// Returns a function by its name.
+/// Returns the function with the name `name`, or `None` if there is none.
 pub fn function(name: &str) -> Option<&'static Function> {
     FUNCTIONS.iter().find(|function| function.name == name)
 }

@@ -2,7 +2,7 @@
 //!
 //! The table is copied, because a library that contains it would add nine crates to the build.
 
-use std::{collections::HashMap, sync::LazyLock};
+use std::sync::LazyLock;
 
 use crate::color::Color;
 
@@ -16,8 +16,10 @@ fn rows() -> impl Iterator<Item = (&'static str, &'static str)> {
 
 /// Returns the colour of a name, in any capitalization. Returns `None` if there is no such colour.
 pub fn color(name: &str) -> Option<Color> {
-    static ROWS: LazyLock<HashMap<&str, &str>> = LazyLock::new(|| rows().collect());
-    let digits = ROWS.get(&*name.to_ascii_lowercase())?;
+    static ROWS: LazyLock<Vec<(&str, &str)>> = LazyLock::new(|| rows().collect());
+    let name = &*name.to_ascii_lowercase();
+    let row = ROWS.binary_search_by_key(&name, |&(name, _)| name).ok()?;
+    let (_, digits) = ROWS.get(row)?;
     let [_, bytes @ ..] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
     Some(Color::from_bytes(bytes))
 }

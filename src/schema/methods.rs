@@ -91,7 +91,7 @@ impl FromStr for Method {
 #[error("there is no method `{0}`; the methods are {list}", list = suggest::list(method_names()))]
 pub struct UnknownMethod(String);
 
-/// Returns a sampling technique by its name in the language.
+/// Returns the sampling technique with the name `name` in the language, or `None` if there is none.
 pub fn method(name: &str) -> Option<Method> {
     let mut methods = METHODS.iter().map(|&(method, _)| method);
     methods.find(|method| method.name() == name)

@@ -26,7 +26,7 @@ pub use types::{FieldValue, Type, Value};
 
 use crate::suggest::{self, is_among};
 
-/// Returns the row of a kind of block by its keyword.
+/// Returns the row of the kind of block with the keyword `name`, or `None` if there is none.
 pub fn block(name: &str) -> Option<&'static BlockRow> {
     BLOCKS.iter().find(|block| block.name == name)
 }
@@ -57,6 +57,7 @@ pub fn nearest_block(written: &str) -> Option<&'static BlockRow> {
 }
 
 /// Returns the row of a block by its keyword, or else by a word that is similar to a keyword.
+/// Returns `None` if no keyword is similar.
 pub fn block_or_nearest(written: &str) -> Option<&'static BlockRow> {
     block(written).or_else(|| nearest_block(written))
 }

@@ -15,7 +15,8 @@ pub struct Choice {
     /// The alternative ways, each a list of fields. If a block uses a way, it must have all fields
     /// of this way whose preset is [`Preset::Alternative`].
     pub ways: &'static [&'static [&'static str]],
-    /// Reason, for messages, why a block can use only one of the alternative ways.
+    /// Reason why a block can use only one of the alternative ways: a clause that messages put
+    /// after a colon.
     pub why: &'static str,
 }
 

@@ -216,7 +216,8 @@ impl Conversation<'_> {
     }
 
     /// Sends the file's content to the page if the page has another version. Does nothing while
-    /// another page locks the file; a later call sends the content.
+    /// another page locks the file; a later call sends the content. Returns an error if the
+    /// connection must be closed.
     fn send_file(&mut self) -> Result<(), Closing> {
         let mut file = match self.file.try_lock() {
             Ok(file) => file,
@@ -284,7 +285,8 @@ impl Conversation<'_> {
         }
     }
 
-    /// Answers a request to the host. If it asks for a download, starts the download instead.
+    /// Answers a request to the host. If the request asks for a download, starts the download
+    /// instead. Returns an error if the connection must be closed.
     fn answer(&mut self, request: Request) -> Result<(), Closing> {
         if download::is_asked_for(&request) {
             return self.render(request);
@@ -325,7 +327,8 @@ impl Conversation<'_> {
         self.send_all(vec![response(id, answer)])
     }
 
-    /// Renders a picture to a file on another thread, while this connection is served.
+    /// Renders a picture to a file on another thread, while this connection is served. If a picture
+    /// is being rendered already, answers the request with an error.
     fn render(&mut self, request: Request) -> Result<(), Closing> {
         let id = request.id.clone();
         let failed = |why: &str| vec![response(id.clone(), Err(Refusal::failed(why)))];

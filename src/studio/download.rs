@@ -1,15 +1,18 @@
-//! Renders the picture of a text to a file that a page downloads. Uses the scene's own sampler.
+//! Renders the picture of a text to a file that a page downloads. Uses the scene's own sampler. The
+//! file may also be an animation: pictures of a text with several values at one place.
 //!
 //! The host on this machine renders the file on several threads (`threaded_download`). The engine
 //! that runs in the browser has only one thread, so it renders the file in slices ([`Sliced`]).
+
+use std::{io, mem};
 
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use lsp_server::{Message, Notification, Request, RequestId};
 use serde_json::{Value, json};
 
 use crate::{
-    film::{self, Recipe},
-    lsp::{Refusal, catch_panics, response},
+    film::{self, Animation, Film, Recipe},
+    lsp::{Refusal, catch_panics, optional, response},
     render::Slices,
     sampling::Sampling,
     scene::{self, Scene},
@@ -34,14 +37,71 @@ pub fn progress(share: f64) -> Message {
     Notification::new("studio/progress".to_owned(), params).into()
 }
 
-/// Reads the scene in the field `text` of a request's parameters. Returns the scene and its text.
-pub(super) fn scene(params: &Value) -> Result<(Scene, String), Refusal> {
-    let text = params.get("text").and_then(Value::as_str);
-    let text = text.ok_or_else(|| Refusal::invalid("there is no `text`"))?;
-    let reading = scene::read(&Sources::new(Source::from_text("scene.scn", text)));
-    let scene = reading.scene;
-    let scene = scene.ok_or_else(|| Refusal::failed("the scene has errors"))?;
-    Ok((scene, text.to_owned()))
+/// The pictures that a request asks for: one, or those of an animation.
+#[derive(Debug)]
+pub(super) struct Asked {
+    before: String,
+    /// What stands between `before` and `after`, for each picture.
+    values: Vec<String>,
+    after: String,
+    /// Time for which a picture of an animation is shown, in milliseconds. `None` if there is no
+    /// animation.
+    pause: Option<u16>,
+}
+
+impl Asked {
+    /// Reads a request's parameters: `text` for a picture, or `before`, `values`, `after` and
+    /// `time` for an animation.
+    pub fn read(params: &Value) -> Result<Self, Refusal> {
+        let text = |key: &str| {
+            let text: Option<String> = optional(params, key)?;
+            text.ok_or_else(|| Refusal::invalid(format!("there is no `{key}`")))
+        };
+        let Some(values) = optional::<Vec<String>>(params, "values")? else {
+            return Ok(Self {
+                before: text("text")?,
+                values: vec![String::new()],
+                after: String::new(),
+                pause: None,
+            });
+        };
+        let time: usize = optional(params, "time")?.unwrap_or_default();
+        let pause = time.checked_div(values.len());
+        let pause = pause.ok_or_else(|| Refusal::invalid("an animation needs `values`"))?;
+        Ok(Self {
+            before: text("before")?,
+            values,
+            after: text("after")?,
+            pause: Some(u16::try_from(pause).unwrap_or(u16::MAX)),
+        })
+    }
+
+    /// Returns the number of pictures.
+    pub fn count(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Returns the scene of the picture with the given index, and its text.
+    pub fn scene(&self, index: usize) -> Result<(Scene, String), Refusal> {
+        let value = &self.values[index];
+        let text = [&*self.before, value, &self.after].concat();
+        let reading = scene::read(&Sources::new(Source::from_text("scene.scn", &*text)));
+        let scene = reading.scene.ok_or_else(|| {
+            let with = self
+                .pause
+                .map_or_else(String::new, |_| format!("with {value} "));
+            Refusal::failed(format!("{with}the scene has errors"))
+        })?;
+        Ok((scene, text))
+    }
+
+    /// Begins the animation, whose first picture is `first`. Returns `None` if there is none.
+    pub fn animation(&self, first: &Film<[u8; 3]>) -> io::Result<Option<Animation>> {
+        let size = [first.width(), first.height()];
+        let count = u32::try_from(self.count()).map_err(io::Error::other)?;
+        let begun = self.pause.map(|pause| Animation::new(size, count, pause));
+        begun.transpose()
+    }
 }
 
 pub(super) fn sampling(scene: &Scene) -> Sampling {
@@ -57,14 +117,37 @@ pub(super) fn recipe(scene: String) -> Recipe {
     }
 }
 
-/// A picture that is rendered to a file in slices.
+/// A file that is rendered in slices.
 #[derive(Debug)]
 pub struct Sliced {
     /// Identifier of the request for the file.
     pub request: RequestId,
+    asked: Asked,
+    /// Index of the picture that is being rendered.
+    index: usize,
+    picture: Rendering,
+    /// The animation, if the file is one, after its first picture.
+    animation: Option<Animation>,
+}
+
+/// A picture that is being rendered.
+#[derive(Debug)]
+struct Rendering {
     text: String,
     world: World,
     slices: Slices<[u8; 3]>,
+}
+
+impl Rendering {
+    fn new(asked: &Asked, index: usize) -> Result<Self, Refusal> {
+        let (scene, text) = asked.scene(index)?;
+        let size = [scene.image.width, scene.image.height];
+        Ok(Self {
+            text,
+            world: World::new(&scene),
+            slices: Slices::new(sampling(&scene), size).map_err(Refusal::failed)?,
+        })
+    }
 }
 
 impl Sliced {
@@ -79,13 +162,13 @@ impl Sliced {
             if request.method == EXR {
                 return Err(Refusal::failed("no EXR is written here"));
             }
-            let (scene, text) = scene(&request.params)?;
-            let size = [scene.image.width, scene.image.height];
+            let asked = Asked::read(&request.params)?;
             Ok(Self {
                 request: request.id.clone(),
-                text,
-                world: World::new(&scene),
-                slices: Slices::new(sampling(&scene), size).map_err(Refusal::failed)?,
+                picture: Rendering::new(&asked, 0)?,
+                asked,
+                index: 0,
+                animation: None,
             })
         })
     }
@@ -93,20 +176,47 @@ impl Sliced {
     /// Renders a slice. Returns the message to send, and whether this message is the final answer.
     pub fn advance(&mut self) -> (Message, bool) {
         match catch_panics(|| self.slice()) {
-            Ok(None) => (progress(self.slices.share()), false),
-            Ok(Some(file)) => (response(self.request.clone(), Ok(file)), true),
+            Ok(None) => (progress(self.share()), false),
+            Ok(Some(file)) => {
+                let file = json!({ "png": BASE64_STANDARD.encode(file) });
+                (response(self.request.clone(), Ok(file)), true)
+            }
             Err(refusal) => (response(self.request.clone(), Err(refusal)), true),
         }
     }
 
-    fn slice(&mut self) -> Result<Option<Value>, Refusal> {
-        if !self.slices.advance(&self.world).map_err(Refusal::failed)? {
+    fn share(&self) -> f64 {
+        (self.index as f64 + self.picture.slices.share()) / self.asked.count() as f64
+    }
+
+    /// Returns the file if the slice was the last one.
+    fn slice(&mut self) -> Result<Option<Vec<u8>>, Refusal> {
+        let Rendering {
+            text,
+            world,
+            slices,
+        } = &mut self.picture;
+        if !slices.advance(world).map_err(Refusal::failed)? {
             return Ok(None);
         }
-        let mut file = Vec::new();
-        let recipe = recipe(self.text.clone());
-        let written = film::write_png(self.slices.film(), Some(&recipe), &mut file);
-        written.map_err(Refusal::failed)?;
-        Ok(Some(json!({ "png": BASE64_STANDARD.encode(file) })))
+        let film = slices.film();
+        if self.index == 0 {
+            self.animation = self.asked.animation(film).map_err(Refusal::failed)?;
+        }
+        let Some(animation) = &mut self.animation else {
+            let mut file = Vec::new();
+            let recipe = recipe(mem::take(text));
+            film::write_png(film, Some(&recipe), &mut file).map_err(Refusal::failed)?;
+            return Ok(Some(file));
+        };
+        animation.add(film).map_err(Refusal::failed)?;
+        self.index += 1;
+        if self.index < self.asked.count() {
+            self.picture = Rendering::new(&self.asked, self.index)?;
+            return Ok(None);
+        }
+        let animation = self.animation.take();
+        let file = animation.map(Animation::finish).transpose();
+        file.map_err(Refusal::failed)
     }
 }

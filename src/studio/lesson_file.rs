@@ -15,7 +15,8 @@ pub struct LessonFile {
 }
 
 impl LessonFile {
-    /// Names a lesson. `read` reads its file and that of its scene.
+    /// Makes the lesson in the file at `path`, without reading it yet. The function `read` will
+    /// read this file and that of the lesson's scene.
     pub fn new(path: &Path, read: Read) -> Self {
         let path = path.to_owned();
         Self { path, read }

@@ -11,7 +11,7 @@ use base64::prelude::{BASE64_STANDARD, Engine as _};
 use lsp_server::{Message, Request};
 use serde_json::{Value, json};
 
-use super::download::{EXR, recipe, sampling, scene};
+use super::download::{Asked, EXR, recipe, sampling};
 use crate::{
     area::Area,
     files,
@@ -48,10 +48,11 @@ pub fn answer(request: Request, watch: &Watch) -> Message {
 }
 
 fn file(method: &str, params: &Value, watch: &Watch) -> Answer {
-    let (scene, text) = scene(params)?;
+    let asked = Asked::read(params)?;
+    let (scene, text) = asked.scene(0)?;
     let made = match method {
         EXR => exr(&scene, text, watch),
-        _ => png(&scene, text, watch),
+        _ => png(&asked, &scene, text, watch),
     };
     let file = made.map_err(|error| {
         if watch.cancel.load(Ordering::SeqCst) {
@@ -66,8 +67,18 @@ fn file(method: &str, params: &Value, watch: &Watch) -> Answer {
 
 type Made = Result<Vec<u8>, Box<dyn Error>>;
 
-fn png(scene: &Scene, text: String, watch: &Watch) -> Made {
-    let film: Film<[u8; 3]> = rendered(scene, watch)?;
+/// Makes a PNG, perhaps with several pictures. The first one shows `scene`.
+fn png(asked: &Asked, scene: &Scene, text: String, watch: &Watch) -> Made {
+    let count = asked.count();
+    let film = rendered(scene, watch, [0, count])?;
+    if let Some(mut animation) = asked.animation(&film)? {
+        animation.add(&film)?;
+        for index in 1..count {
+            let (scene, _) = asked.scene(index).map_err(|Refusal(_, why)| why)?;
+            animation.add(&rendered(&scene, watch, [index, count])?)?;
+        }
+        return Ok(animation.finish()?);
+    }
     let mut file = Vec::new();
     files::write_stream(&mut file, &watch.cancel, |out| {
         film::write_png(&film, Some(&recipe(text)), out)
@@ -76,14 +87,19 @@ fn png(scene: &Scene, text: String, watch: &Watch) -> Made {
 }
 
 fn exr(scene: &Scene, text: String, watch: &Watch) -> Made {
-    let film: Film<[f32; 3]> = rendered(scene, watch)?;
+    let film: Film<[f32; 3]> = rendered(scene, watch, [0, 1])?;
     let whole = Area::whole(film.width(), film.height());
     let mut file = Cursor::new(Vec::new());
     film::write_exr(&film, whole, whole, Some(&recipe(text).digest()), &mut file)?;
     Ok(file.into_inner())
 }
 
-fn rendered<P: film::Pixel>(scene: &Scene, watch: &Watch) -> Result<Film<P>, RenderError> {
+/// Renders the picture with the given index of the given number of pictures.
+fn rendered<P: film::Pixel>(
+    scene: &Scene,
+    watch: &Watch,
+    [index, count]: [usize; 2],
+) -> Result<Film<P>, RenderError> {
     let cancel = &watch.cancel;
     let world = World::new_unless(scene, cancel)?;
     let sampling = sampling(scene);
@@ -93,7 +109,10 @@ fn rendered<P: film::Pixel>(scene: &Scene, watch: &Watch) -> Result<Film<P>, Ren
     } else {
         sampling.total()
     };
-    watch.expected.store(expected, Ordering::Relaxed);
+    // All pictures of an animation count as if they were as much work as this one.
+    let [before, all] = [index, count].map(|pictures| expected.saturating_mul(pictures as u64));
+    watch.done.store(before, Ordering::Relaxed);
+    watch.expected.store(all, Ordering::Relaxed);
     let control = Control {
         progress: &|more| {
             watch.done.fetch_add(more, Ordering::Relaxed);

@@ -68,9 +68,9 @@ pub const BAD_COLOR_CODE: Message = Message::new(["bad_color_code", "`{0}` is no
 pub const BAD_NUMBER: Message = Message::new(["bad_number", "`{0}` is no number", "{1}", "write a number such as `2`, `0.5` or `1e-3`"]).safe();
 pub const SPACED_UNIT: Message = Message::new(["spaced_unit", "a unit stands right behind its number", "no space between the two", "{0}"]).safe();
 
-/// Statements of other languages. A row holds the words that start such statements, separated by
-/// spaces; a plural noun that completes the message "the language has no …"; and the help text of
-/// that message.
+/// Statements of other languages. Each row has three texts. The first lists the words that start
+/// such statements, separated by spaces. The second is a plural noun that completes the message
+/// "the language has no …". The third is the help of that message.
 const STATEMENTS: &[[&str; 3]] = &[
     ["if else switch case", "conditions", "write what holds; `min` and `max` choose between two numbers"],
     ["for while loop repeat foreach", "loops", "an object is repeated by its head, as in `sphere for i < 8 { center (i, 1, 0) }`"],
@@ -87,7 +87,7 @@ pub fn statement(word: &str) -> Option<[&'static str; 2]> {
     STATEMENTS.iter().find(is_one).map(|row| [row[1], row[2]])
 }
 
-/// Sentence that is added to the help of [`FOREIGN_FILE`] if the program that made the file uses
+/// Text that is appended to the help of [`FOREIGN_FILE`] if the program that made the file uses
 /// left-handed coordinates, i.e. if the z axis points away from the viewer.
 const LEFT_HANDED: &str = "; turn the sign of every z (`pinhole explain left_handed`)";
 
@@ -101,7 +101,7 @@ const LEFT_HANDED: &str = "; turn the sign of every z (`pinhole explain left_han
 /// - the strings to count in the file, separated by `|`;
 /// - the minimum total number of these strings;
 /// - the characters that must not occur in the file;
-/// - an addition to the help.
+/// - a text that is appended to the help, or an empty text.
 pub const FOREIGN_FILES: &[(&str, &str, &str, usize, &str, &str)] = &[
     ("XML", "<?xml", "<", 1, "", ""),
     ("XML", "<", "</", 1, "", ""),

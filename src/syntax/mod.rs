@@ -1,10 +1,11 @@
 //! Parses a text into a syntax tree.
 //!
-//! In: a text. Out: its syntax tree, its comments and its problems. Parsing always succeeds. pest,
-//! a parser generated from the grammar, reads the items that follow the grammar (`parser`). Error
-//! recovery (`tokens`, `recovery`) reads any other item token by token. It reports one problem for
-//! each mistake and makes nodes for the parts that it can read. The parser does not check whether
-//! names exist; it looks them up only to choose between explanations of a mistake.
+//! In: a text. Out: its syntax tree, its comments and its problems. Parsing always succeeds. An
+//! item is a block or a `let`. pest, a parser generated from the grammar, reads each item that
+//! follows the grammar (`parser`). Error recovery (`tokens`, `recovery`) reads any other item token
+//! by token. It reports one problem for each mistake and makes nodes for the parts that it can
+//! read. The parser accepts unknown names. It looks up a name only to explain a mistake, for
+//! example to tell a field from a value.
 
 #![cfg_attr(
     not(test),
@@ -21,6 +22,7 @@
 mod messages;
 mod parser;
 mod parts;
+mod plain;
 mod problem;
 mod recovery;
 mod scan;
@@ -63,9 +65,9 @@ pub struct Parsed<'s> {
     /// Whether a mistake, such as an unclosed comment, hides a part of the text. If so, no missing
     /// block or field is reported, since the hidden part may contain it.
     pub is_cut: bool,
-    /// Whether error recovery was tried on an item that follows the grammar, such as a block with
-    /// an unknown field, and found no better reading of it. Error recovery depends on line ends, so
-    /// its result may differ for a formatted copy of the text. Such a copy must therefore be parsed
-    /// again to see whether it has syntax errors.
+    /// Whether the text contains an item that follows the grammar but looks wrong, such as a block
+    /// with an unknown field, and for which error recovery found no better reading. Such a text is
+    /// accepted. A formatted copy of it may still be rejected, because error recovery depends on
+    /// line ends. The copy must therefore be parsed again to see whether it has syntax errors.
     pub is_doubtful: bool,
 }

@@ -1,13 +1,14 @@
 //! Parses a text into the tree.
 //!
 //! In: a source. Out: its tree, comments and problems. pest, a parser generated from the grammar,
-//! reads every item that follows the grammar, a few kilobytes at a time. The functions here convert
-//! pest's pairs (matches of grammar rules) to nodes and are named after the rules. `recovery` reads
-//! an item that pest rejects. It also reads an item that pest accepts but that was probably meant
-//! otherwise, such as a block with an unknown field.
+//! reads every item that follows the grammar, except blocks without operators, which `plain` reads
+//! faster. The functions here convert pest's pairs (matches of grammar rules) to nodes and are
+//! named after the rules. `recovery` reads an item that pest rejects. It also reads an item that
+//! pest accepts but that was probably meant otherwise, such as a block with an unknown field.
 //!
-//! The text is split into pieces for pest after a `}` or before a `let`: in a text without
-//! mistakes, every `}` ends a block and every `let` starts a definition.
+//! The text is read in pieces, so that an item that pest rejects costs little. Each piece ends
+//! after a `}` or before a `let`: in a text without mistakes, every `}` ends a block and every
+//! `let` starts a definition.
 
 use std::{
     ops::Range,
@@ -22,7 +23,8 @@ use pest::{
 };
 
 use super::{
-    Parsed,
+    NESTING_LIMIT, Parsed,
+    plain::PlainReader,
     recovery::Recovery,
     scan::Scan,
     tokens::{Lexer, TokenKind},
@@ -53,8 +55,12 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
 
 /// Stack size, in bytes, of the threads that parse. Without optimization, pest and error recovery
 /// use tens of kilobytes of stack for each level of nesting, and there are at most 256 levels
-/// ([`NESTING_LIMIT`](super::NESTING_LIMIT)). All levels together fit into half of this size.
+/// ([`NESTING_LIMIT`]). All levels together fit into half of this size.
 pub const STACK_BYTES: usize = 64 << 20;
+
+/// Maximum nesting depth of a text that is parsed on the caller's stack. With a much larger
+/// maximum, a text could overflow a small stack; few texts nest deeper.
+const SHALLOW: usize = 12;
 
 /// Minimum length, in bytes, of a value that is parsed on a thread with a stack of its own. Shorter
 /// values are parsed on the caller's stack: each nesting level needs at least one byte of text, so
@@ -62,10 +68,9 @@ pub const STACK_BYTES: usize = 64 << 20;
 /// stack. With a smaller one, more threads would be started.
 const SHORT_VALUE_BYTES: usize = 32;
 
-/// Minimum number of bytes that pest, the generated parser, reads at a time. The actual number is
-/// usually larger, because a piece of text ends at a place where the text can be split. pest keeps
-/// all matches of grammar rules of a piece in memory, so a much larger number would need much
-/// memory.
+/// Minimum number of bytes of the pieces in which a text is read. The actual number is usually
+/// larger, because a piece ends at a place where the text can be split. pest may look at all of a
+/// piece before it rejects an item, so a much larger number would make mistakes expensive.
 pub const CHUNK_BYTES: usize = 4096;
 
 /// Parses a file.
@@ -75,21 +80,22 @@ pub fn parse(source: &Source, id: SourceId) -> Parsed<'_> {
 
 /// Parses a file. If `cancel` is set meanwhile, returns the part that was read.
 pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -> Parsed<'s> {
-    with_stack(|| {
-        let text = source.text();
-        let scan = Scan::of(text, id, source.bom_len(), cancel);
-        let words = Vocabulary::new(text);
+    let text = source.text();
+    let scan = Scan::of(text, id, source.bom_len(), cancel);
+    let words = Vocabulary::new(text);
+    let read = |limit| {
         let mut recovery = Recovery::new(source, id, &words);
+        recovery.limit = limit;
         let mut builder = TreeBuilder::new(text, id, &words);
         let mut at = source.bom_len();
         while at < text.len() && !cancel::is_set(cancel) {
             let end = first_from(&scan.split_points, at + CHUNK_BYTES).unwrap_or(text.len());
             let deep = first_from(&scan.deep, at).filter(|&place| place <= end);
             let end = deep.unwrap_or(end);
-            let (next, is_stop) = builder.items(at..end, &mut recovery);
+            let (next, is_agreed) = builder.items(at..end, &mut recovery);
             let token = Lexer::new(text, next).seen_token();
             let is_read = token.kind == TokenKind::End || (token.start >= end && deep.is_none());
-            at = if !is_stop {
+            at = if !is_agreed {
                 next
             } else if is_read {
                 token.start
@@ -97,13 +103,21 @@ pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -
                 recover_item(&mut recovery, text, token.start)
             };
         }
-        recovery.finish(scan)
-    })
+        recovery
+    };
+    // Starting a thread takes longer than reading a small scene, so a shallow text is read on the
+    // caller's stack. Error recovery may count more levels than the scan; then the text is read
+    // again on a thread.
+    let is_shallow = scan.nesting <= SHALLOW;
+    let shallow = is_shallow.then(|| read(SHALLOW));
+    let recovery = shallow.filter(|recovery| !recovery.has_passed_over);
+    let recovery = recovery.unwrap_or_else(|| with_stack(|| read(NESTING_LIMIT)));
+    recovery.finish(scan)
 }
 
-/// Reads the item at `at`, which does not follow the grammar, and returns its end. If the text at
-/// `at` may continue the definition before it ([`goes_on`]), and pest read that definition, removes
-/// the definition's node and reads the definition again from its start.
+/// Reads the item at `at`, which does not follow the grammar, and returns its end. The text at `at`
+/// may instead continue the definition before it ([`goes_on`]). If pest read that definition, its
+/// node is removed, and the definition is read again from its start.
 fn recover_item(recovery: &mut Recovery<'_, '_>, text: &str, mut at: usize) -> usize {
     if let Some(Item::Definition(last)) = recovery.items.last()
         && last.span.start >= recovery.read_to
@@ -190,22 +204,13 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         }
     }
 
-    /// Parses the items in `range` with pest, and adds their nodes to `recovery`. An item that was
-    /// probably meant otherwise is read again by error recovery. If error recovery ends such an
-    /// item at another offset than pest, reading stops after the item. Returns the end of the last
-    /// item that was read, and `false` if reading stopped for this reason.
+    /// Reads the items in `range`, and adds their nodes to `recovery`. An item that was probably
+    /// meant otherwise is read again by error recovery. If error recovery ends such an item at
+    /// another offset, the two do not agree, and reading stops. Returns the end of the last item
+    /// that was read, and whether the two agree everywhere.
     pub fn items(&mut self, range: Range<usize>, recovery: &mut Recovery<'_, 's>) -> (usize, bool) {
-        self.base = range.start;
-        let slice = self.text.get(range.clone()).unwrap_or_default();
         let mut end = range.start;
-        for pair in Grammar::parse(Rule::items, slice).into_iter().flatten() {
-            self.doubtful = false;
-            let start = self.base + pair.as_span().start();
-            let item = match pair.as_rule() {
-                Rule::definition => Item::Definition(self.definition(pair)),
-                Rule::block => Item::Block(self.block(pair)),
-                _ => continue,
-            };
+        while let Some((start, item)) = self.item(end..range.end) {
             // In `let a = 2 pi`, followed by `sphere {`, pest reads `pi sphere {` as a block of the
             // kind `pi` with the name `sphere`. The actual kind is `sphere`, so reading stops
             // before `pi`, and recovery reports that `2 pi` lacks its operator.
@@ -217,9 +222,9 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 return (end, true);
             }
             end = item.span().end;
-            // An item that was probably meant otherwise (`doubtful`) is read again by error
-            // recovery. So is an item with `--`, which may start a comment of another language; to
-            // bound the work, this is not done for items of [`CHUNK_BYTES`] or more.
+            // An item is read again by error recovery in two cases: it was probably meant otherwise
+            // (`doubtful`), or it contains `--`, which may start a comment of another language. In
+            // the second case, the item must be shorter than [`CHUNK_BYTES`], to bound the work.
             let written = self.written(item.span());
             if self.doubtful || (written.len() < CHUNK_BYTES && written.contains("--")) {
                 match recovery.item_as_meant(start) {
@@ -231,6 +236,42 @@ impl<'w, 's> TreeBuilder<'w, 's> {
             recovery.items.push(item);
         }
         (end, true)
+    }
+
+    /// Reads the first item in `range`, and returns its start and the item. Returns `None` if there
+    /// is none, or if it does not follow the grammar.
+    fn item(&mut self, range: Range<usize>) -> Option<(usize, Item<'s>)> {
+        self.doubtful = false;
+        let text = self.text.get(..range.end)?;
+        let mut lexer = Lexer::new(text, range.start);
+        let first = lexer.token_after_comments();
+        if first.kind == TokenKind::End {
+            return None;
+        }
+        let mut plain = PlainReader::new(text, self.id, self.words, (lexer, first));
+        let item = match plain.block() {
+            Some(block) => Item::Block(block),
+            None => self.item_by_grammar(text, first.start)?,
+        };
+        Some((first.start, item))
+    }
+
+    /// Reads the item that starts at `start` with pest. Returns `None` if it does not follow the
+    /// grammar.
+    pub fn item_by_grammar(&mut self, text: &str, start: usize) -> Option<Item<'s>> {
+        self.base = start;
+        let slice = text.get(start..)?;
+        let pair = Grammar::parse(Rule::item, slice).ok()?.next()?;
+        Some(match pair.as_rule() {
+            Rule::definition => Item::Definition(self.definition(pair)),
+            _ => Item::Block(self.block(pair)),
+        })
+    }
+
+    /// Returns whether error recovery should read the last item again.
+    #[cfg(test)]
+    pub fn is_doubtful(&self) -> bool {
+        self.doubtful
     }
 
     fn definition(&mut self, pair: Pair<'_, Rule>) -> Definition<'s> {

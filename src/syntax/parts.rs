@@ -1,7 +1,7 @@
 //! Parses a large file in parts, on several threads.
 //!
-//! In: a source. Out: the items of each part, in the order of the file, if the whole file follows
-//! the grammar.
+//! In: a source. Out: the items of each part, or what is made of them, in the order of the file, if
+//! the whole file follows the grammar.
 
 use std::{
     ops::Range,
@@ -10,10 +10,11 @@ use std::{
 };
 
 use super::{
-    parser::{CHUNK_BYTES, STACK_BYTES, TreeBuilder, first_from},
+    parser::{STACK_BYTES, TreeBuilder},
+    plain,
     recovery::Recovery,
     scan::Scan,
-    tokens::Lexer,
+    tokens::{Lexer, TokenKind},
     tree::Item,
     vocabulary::Vocabulary,
 };
@@ -23,64 +24,62 @@ use crate::{
     threads,
 };
 
-/// Maximum number of threads that parse one file. One thread alone turns the parsed items into a
-/// scene, so more parsing threads would only wait for it.
+/// Maximum number of threads that parse one file. One thread alone collects the results, so more
+/// parsing threads would only wait for it.
 const MOST_THREADS: usize = 4;
 
-/// Parses a file in parts of at least `bytes` bytes and passes the items of each part to `each`, in
+/// Parses a file in parts of at least `bytes` bytes. Calls `prepare` with the items of each part,
+/// on the thread that parsed the part, and passes the results to `each` on the caller's thread, in
 /// the order of the file. The whole tree is never in memory. Returns `true` if all parts were
 /// passed. Returns `false` if the file has mistakes or is too short for two parts, if `each`
-/// returned `false`, or if parsing was cancelled; the caller must then discard the items that were
-/// passed.
-pub fn parse_in_parts<'s>(
+/// returned `false`, or if parsing was cancelled; the caller must then discard what was passed.
+pub fn parse_in_parts<'s, R: Send>(
     source: &'s Source,
     id: SourceId,
     bytes: usize,
     cancel: &AtomicBool,
-    mut each: impl FnMut(Vec<Item<'s>>) -> bool,
+    prepare: impl Fn(Vec<Item<'s>>) -> R + Sync,
+    mut each: impl FnMut(R) -> bool,
 ) -> bool {
     let text = source.text();
     if text.len() / 2 < bytes {
         return false;
     }
-    let scan = Scan::of(text, id, source.bom_len(), cancel);
-    if !scan.is_plain(text) {
-        return false;
-    }
-    let parts = ranges(source, bytes, &scan);
+    let parts = ranges(source, bytes);
     let words = Vocabulary::new(text);
-    // Returns the items of a part; `None` if the part does not follow the grammar or its last item
-    // continues beyond its end.
+    // Returns the result for a part; `None` if the part does not follow the grammar or its last
+    // item or comment continues beyond its end. If no part does, every part starts at an item: the
+    // first one does, and each other one starts where the items before it end.
     let read = |part: &Range<usize>| {
-        let mut recovery = Recovery::new(source, id, &words);
-        let mut right = TreeBuilder::new(text, id, &words);
-        let mut from = part.start;
-        while from < part.end {
-            let to = first_from(&scan.split_points, from + CHUNK_BYTES).unwrap_or(part.end);
-            let to = to.min(part.end);
-            let (next, is_right) = right.items(from..to, &mut recovery);
-            let is_read = is_right && Lexer::new(text, next).seen_token().start >= to;
-            if cancel::is_set(cancel) || !is_read || !recovery.problems.is_empty() {
-                return None;
-            }
-            from = to;
+        let text = text.get(..part.end)?;
+        let is_wanted = || !cancel::is_set(cancel);
+        if let Some(items) = plain::blocks(text, id, &words, part.start) {
+            return is_wanted().then(|| prepare(items));
         }
-        Some(recovery.items)
+        if !Scan::of(text, id, part.start, cancel).is_plain(text) {
+            return None;
+        }
+        let mut recovery = Recovery::new(source, id, &words);
+        let mut builder = TreeBuilder::new(source.text(), id, &words);
+        let (next, is_agreed) = builder.items(part.clone(), &mut recovery);
+        let is_read = is_agreed && Lexer::new(text, next).seen_token().kind == TokenKind::End;
+        let is_right = is_read && recovery.problems.is_empty() && is_wanted();
+        is_right.then(|| prepare(recovery.items))
     };
     let count = threads::available().min(parts.len()).min(MOST_THREADS);
     thread::scope(|scope| {
         // Thread i parses the parts i, i + count, i + 2·count and so on, where count is the number
-        // of threads. Its channel holds one result, so while this result is not taken, the thread
-        // parses one further part and then waits.
+        // of threads. Its channel holds one result. Until the receiver takes this result, the
+        // thread parses at most one further part and then waits.
         let parsed: Vec<mpsc::Receiver<_>> = (0..count)
             .map(|first| {
                 let (found, results) = mpsc::sync_channel(1);
                 let (parts, read) = (&parts, &read);
                 let work = move || {
                     for part in parts.iter().skip(first).step_by(count) {
-                        let items = read(part);
-                        let is_right = items.is_some();
-                        if found.send(items).is_err() || !is_right {
+                        let result = read(part);
+                        let is_right = result.is_some();
+                        if found.send(result).is_err() || !is_right {
                             break;
                         }
                     }
@@ -94,22 +93,28 @@ pub fn parse_in_parts<'s>(
             .collect();
         let mut in_order = parsed.iter().cycle().take(parts.len());
         in_order.all(|results| match results.recv() {
-            Ok(Some(items)) => !cancel::is_set(cancel) && each(items),
+            Ok(Some(result)) => !cancel::is_set(cancel) && each(result),
             _ => false,
         })
     })
 }
 
-/// Returns the byte ranges of the parts. Each part ends where the text can be split, after a `}` or
-/// before a `let`. Each has at least `bytes` bytes, except the last one.
-fn ranges(source: &Source, bytes: usize, scan: &Scan) -> Vec<Range<usize>> {
+/// Returns the byte ranges of the parts. Each part ends with a line whose last character is a `}`,
+/// which usually ends a block. Each has at least `bytes` bytes, except the last one. The text is
+/// not read here, so a part may also end within a comment.
+fn ranges(source: &Source, bytes: usize) -> Vec<Range<usize>> {
+    let text = source.text().as_bytes();
     let (mut parts, mut from) = (Vec::new(), source.bom_len());
-    while let Some(to) = first_from(&scan.split_points, from + bytes.max(1)) {
+    while from < text.len() {
+        let rest = text.get(from + bytes..).unwrap_or_default();
+        let mut ends = memchr::memchr_iter(b'\n', rest).map(|at| from + bytes + at);
+        let is_after_brace = |&end: &usize| {
+            let line = text.get(from..end).unwrap_or_default();
+            line.trim_ascii_end().ends_with(b"}")
+        };
+        let to = ends.find(is_after_brace).map_or(text.len(), |end| end + 1);
         parts.push(from..to);
         from = to;
-    }
-    if from < source.text().len() {
-        parts.push(from..source.text().len());
     }
     parts
 }

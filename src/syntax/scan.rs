@@ -32,6 +32,8 @@ pub struct Scan {
     /// and all minuses, although a minus that subtracts does not nest. Error recovery therefore
     /// reads the items at these offsets again and counts exactly.
     pub deep: Vec<usize>,
+    /// Greatest nesting depth of a value, counted in the same way.
+    pub nesting: usize,
     /// Ascending offsets where a text without mistakes can be split: after a `}` or before a `let`.
     /// Neighbouring offsets are at least [`SPLIT_SPACING_BYTES`] apart.
     pub split_points: Vec<usize>,
@@ -91,7 +93,9 @@ impl Scan {
                 }
                 _ => minuses = 0,
             }
-            let is_deep = open.len() + outside + minuses > NESTING_LIMIT;
+            let depth = open.len() + outside + minuses;
+            scan.nesting = scan.nesting.max(depth);
+            let is_deep = depth > NESTING_LIMIT;
             if is_deep && !is_told {
                 scan.deep.push(token.start);
             }

@@ -17,7 +17,7 @@ pub enum TokenKind {
     /// A colour code such as `#ff8000`: a `#` and the word directly after it, even if this word is
     /// no valid code.
     Color,
-    /// A text in quotation marks, including the marks. If no closing mark follows in its line, it
+    /// A text in quotation marks, including the marks. If the line has no closing mark, the token
     /// is only the opening mark and the word directly after it.
     Quoted,
     /// A word with letters that are not ASCII.
@@ -68,6 +68,16 @@ impl<'s> Lexer<'s> {
         let (kind, end) = self.kind_and_end(start);
         self.at = end;
         Token { kind, start, end }
+    }
+
+    /// Returns the next token that is no comment.
+    pub fn token_after_comments(&mut self) -> Token {
+        loop {
+            let token = self.token();
+            if token.kind != TokenKind::Comment {
+                return token;
+            }
+        }
     }
 
     /// Returns the next token that is neither a comment nor an invisible character.
@@ -138,13 +148,15 @@ impl<'s> Lexer<'s> {
         let bytes = self.text.as_bytes();
         let mut end = start;
         while let Some(&byte) = bytes.get(end) {
-            let before = bytes.get(end.wrapping_sub(1)).copied();
-            let is_digit = bytes.get(end + 1).is_some_and(u8::is_ascii_digit);
-            let is_exponent = matches!(before, Some(b'e' | b'E')) && end > start && is_digit;
+            let is_exponent = || {
+                let before = bytes.get(start..end).and_then(<[u8]>::last);
+                let is_digit = bytes.get(end + 1).is_some_and(u8::is_ascii_digit);
+                matches!(before, Some(b'e' | b'E')) && is_digit
+            };
             match byte {
                 b'.' => {}
-                b'+' | b'-' if is_exponent => {}
                 _ if is_name_char(byte) => {}
+                b'+' | b'-' if is_exponent() => {}
                 _ => break,
             }
             end += 1;

@@ -1,8 +1,8 @@
 //! Bounds of an object in the view plane, and of its inverse depth.
 //!
 //! In: an object. Out: its bounds in the view plane's coordinates X and Y, and the maximum of its
-//! inverse depth. The quadtree is built from both. A sphere is bounded by its tangents from the
-//! eye, a triangle or a box by the extremes of its corners.
+//! inverse depth. The quadtree is built from these bounds. A sphere is bounded by its tangents from
+//! the eye, a triangle or a box by the extremes of its corners.
 //!
 //! The bounds are those of the object's convex hull, widened by far more than all rounding errors.
 //! If a ray outside of the bounds were tested against the object itself, the result would therefore
@@ -119,7 +119,7 @@ fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
     if z + radius < 0.0 {
         return Hull::Behind;
     }
-    // The difference z − R and the sum z + R of the centre's z and the radius R have one rounding
+    // The difference z − R and the sum z + R of the centre's z and the radius R are rounded once
     // each, so their product has a small relative error. If the product is positive, its sum with
     // c² has a small relative error, too.
     let below = (z - radius) * (z + radius);

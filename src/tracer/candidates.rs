@@ -67,9 +67,10 @@ pub fn narrowed(
 /// list entries for the area. An object has at most four entries, so there are then more than
 /// `most` objects.
 ///
-/// Also returns `false` if `is_worth` does. With this function, the caller can reject an area that
-/// shows too many objects. Its first argument is the number of objects found. The second is the
-/// number of the objects' bounds that contain a ray through the area, averaged over all such rays.
+/// Also returns `false` if the function `is_worth` returns `false`, by which the caller can reject
+/// an area with too many objects. Its first argument is the number of objects found. Its second
+/// argument is the number of the objects' bounds that contain a ray through the area, averaged over
+/// all such rays.
 #[must_use]
 pub fn within(
     world: &World,
@@ -205,12 +206,13 @@ pub(super) fn cover(
     Some(candidate)
 }
 
-/// Removes flat objects that another flat object hides in the whole rectangle `patch`. The object
-/// that hides them is the nearest flat one that every ray through the rectangle hits. The ranges of
-/// two objects' inverse depths over the rectangle may overlap although one object is nearer along
-/// every ray, so the objects' planes are compared. Of parallel layers, only the nearest remains. Of
-/// objects in one plane, only the first in the file remains. An object that the near plane may cut
-/// is kept, and hides no other object here.
+/// Removes flat objects that another flat object hides in the whole rectangle `patch`. Of all flat
+/// objects that every ray through the rectangle hits, only the nearest is used to hide others. Of
+/// parallel layers, only the nearest remains. Of objects in one plane, only the first in the file
+/// remains. An object that the near plane may cut is kept, and hides no other object here.
+///
+/// The objects' planes are compared, because the ranges of two objects' inverse depths over the
+/// rectangle may overlap although one object is nearer along every ray.
 fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<VisibilityCandidate>) {
     let is_flat = |candidate: &&VisibilityCandidate| {
         let object = f64::object(&world.geometry, candidate.object);

@@ -3,13 +3,13 @@
 //! In: a block of pixels in which only one board is seen. Out: runs of pixels that show one colour,
 //! and for every other pixel the squares that it shows.
 //!
-//! Elsewhere, the picture is divided recursively into quarters. Where only a board is seen, this
-//! would mostly go on down to single pixels, and the square at a corner would be computed for each
-//! of the four pixels that share it. The squares at all corners of a block's pixels are therefore
-//! computed first, row by row in plain arrays, which the compiler vectorizes. A coordinate on the
-//! board is a ratio of linear forms, which has its extremes over a pixel at the pixel's corners. A
-//! pixel therefore shows only one square if all its corners lie in this square, farther from the
-//! square's edges than the error bound.
+//! Other parts of the picture are divided recursively into quarters. A part with only a board would
+//! mostly be divided down to single pixels. The square at a corner would then be computed four
+//! times, once for each pixel that shares the corner. In such a part, the squares at all corners of
+//! a block's pixels are therefore computed first, row by row in plain arrays, which the compiler
+//! vectorizes. A coordinate on the board is a ratio of linear forms, which has its extremes over a
+//! pixel at the pixel's corners. A pixel therefore shows only one square if all its corners lie in
+//! this square, farther from the square's edges than the error bound.
 
 use std::{array, ops::ControlFlow};
 
@@ -60,7 +60,7 @@ pub struct CheckerPixel {
     pub(crate) corners: [[f64; 4]; 2],
     /// Whether the pixel's corners certainly lie in the squares `corners`. If not, a corner may lie
     /// in a square next to the one in `corners`. The error bounds in the field `squares` are then
-    /// so large that they cover the distance of the corner from the line between these two squares.
+    /// enlarged, so that they allow either of the two squares.
     pub(crate) is_certain: bool,
 }
 
@@ -300,9 +300,9 @@ impl BoardBlock {
     }
 
     /// Replaces the index of each uncertain square (NaN) in `corners` by the index that follows
-    /// from the corner's computed position. Returns the squares and, for x and z, the maximum
-    /// distance, in squares, between an uncertain corner and the nearest line between squares.
-    /// Returns `None` if a quotient is not finite.
+    /// from the corner's computed position. Returns the squares. Also returns, for x and z, an
+    /// upper bound of the distance, in squares, between an uncertain corner and the nearest line
+    /// between squares; 0 if no corner is uncertain. Returns `None` if a quotient is not finite.
     #[cold]
     fn probable(
         &self,
@@ -424,8 +424,8 @@ impl CheckerForms {
         let least = self.least()?;
         let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));
         let [x, z] = self.across.each_ref().map(|across| {
-            // A ratio of linear forms takes its extremes at the rectangle's corners, so only these
-            // are evaluated.
+            // A ratio of linear forms has its extremes over the rectangle at the rectangle's
+            // corners, so it is evaluated only there.
             let values: [f64; 4] = array::from_fn(|i| {
                 let (x, y) = CORNERS[i];
                 across.at(x, y) * inverse[i]

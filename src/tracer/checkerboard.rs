@@ -20,10 +20,10 @@ use crate::{
     scene,
 };
 
-/// Limit, in squares, of the distance by which the origin of a board's coordinates is moved.
-/// [`Checkerboard::local`] moves the origin to the part of the board that a rectangle shows, if the
-/// distance is below the limit. The distance is a quotient that is rounded to a whole number. From
-/// 2^52 on, an `f64` has no fractional digits, so the quotient may be wrong by a whole square.
+/// Distance, in squares, from which on [`Checkerboard::local`] does not move the origin of a
+/// board's coordinates to the part of the board that a rectangle shows. The distance is a quotient
+/// that is rounded to a whole number. From 2^52 on, an `f64` has no fractional digits, so the
+/// rounded quotient may be wrong by a whole square.
 const MOST_SQUARES: f64 = (1u64 << 52) as f64;
 
 /// A checkerboard prepared for one picture.
@@ -84,8 +84,8 @@ impl<T: Real> Checkerboard<T> {
             EyeOffset::new(camera.eye.z, square),
         );
         let numerator = |axis: usize, from_square: &EyeOffset| {
-            // With e the eye, r the ray's direction and h the board's height relative to the eye,
-            // the ray hits the board at x = e_x + r_x/ℓ, where ℓ = r_y/h. Therefore x/square =
+            // Let e be the eye, r the ray's direction and h the board's height relative to the eye.
+            // The ray hits the board at x = e_x + r_x/ℓ, where ℓ = r_y/h. Therefore x/square =
             // (ℓ·e_x/square + r_x/square)/ℓ, and the numerator is a linear form.
             let along = camera.turned(&axis_vector(axis));
             let exponent = -libm::frexp(square).1;
@@ -104,7 +104,8 @@ impl<T: Real> Checkerboard<T> {
     }
 
     /// Returns whether the square that the ray hits has the second colour, that is whether
-    /// floor(x/square) + floor(z/square) is odd.
+    /// floor(x/square) + floor(z/square) is odd. Returns a [`Doubt`] if rounding errors leave this
+    /// uncertain.
     #[inline]
     pub fn is_odd(&self, r: &Direction<T>) -> Result<bool, Doubt> {
         let below = self.below.at(r);

@@ -33,8 +33,8 @@ pub struct Convex<T: Real> {
     forms: Vec<Form<T>>,
     /// Number of the forms that bound the object.
     edges: u8,
-    /// Number of the forms that bound the object and of the faces where rays first hit it. The
-    /// forms from this index on belong to the other faces.
+    /// Number of the forms in the first two groups: those that bound the object, and those of the
+    /// faces where rays first hit it. The forms from this index on belong to the other faces.
     firsts: u8,
     /// Numbers that identify the planes of the faces. The faces where rays first hit the object
     /// come before the other faces.
@@ -119,8 +119,8 @@ impl<T: Real> Convex<T> {
     }
 
     /// Returns the nearest crossing in front of the eye. If the eye is inside the object, the ray
-    /// leaves the object there; otherwise, it enters. Returns `None` if the ray misses the object.
-    /// A ray on an edge hits the object.
+    /// leaves the object there; otherwise, it enters. Returns `None` if the ray misses the object,
+    /// and a [`Doubt`] if rounding errors leave this uncertain. A ray on an edge hits the object.
     #[inline]
     pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
         // If the object is very small or almost edge-on, the values of all its edge functions may
@@ -162,9 +162,9 @@ impl<T: Real> Convex<T> {
     /// inverse depth, or with the greatest if `which` is `Greater`. `start` is the index of the
     /// first of `faces` among all faces. Returns `None` if there are no faces.
     ///
-    /// If another plane's inverse depth differs from the result by no more than the errors of the
-    /// two, the crossing is assigned to an edge, not to a plane. The error bound of its inverse
-    /// depth is then the larger of the two error bounds.
+    /// If another plane's inverse depth cannot be distinguished from the result, within the error
+    /// bounds of both, the crossing is assigned to an edge, not to a plane. The larger of the two
+    /// error bounds is then the error bound of the crossing.
     #[inline]
     fn extreme(
         &self,

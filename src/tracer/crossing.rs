@@ -1,5 +1,5 @@
-//! A crossing of a ray with a surface: its inverse depth, and the part of the surface that it lies
-//! in.
+//! A crossing of a ray with a surface, given by its inverse depth and by the part of the surface
+//! that contains it.
 
 use crate::math::{Ball, Real};
 

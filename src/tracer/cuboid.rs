@@ -47,8 +47,7 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
     }
     for (i, front) in &fronts {
         // An edge of the box's silhouette lies between a front face and a back face that are not
-        // parallel. If only one face is prepared, the silhouette edges of other faces are left out,
-        // because they do not bound it.
+        // parallel. If only one face is prepared, only the silhouette edges of this face are added.
         let is_bound = |j: &u8| i / 2 != j / 2 && only.is_none_or(|only| [*i, *j].contains(&only));
         let bounding = backs.iter().filter(|(j, _)| is_bound(j));
         edges.extend(bounding.map(|(_, back)| front.minus(back)));

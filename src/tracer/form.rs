@@ -15,10 +15,10 @@ pub struct Form<T: Real> {
     factors: [T; 3],
     /// Error bound of a computed value of the form in the camera's window.
     rad: T::Radius,
-    /// A tighter error bound for a single ray: for the direction (X, Y, Z), the form's value is
-    /// wrong by at most `rads[0]`·|X| + `rads[1]`·|Y| + `rads[2]`·|Z|. In the middle of a very wide
-    /// view, this is far less than `rad`, which holds in the whole window. Only the highest
-    /// precision has this field, because the other precisions leave doubtful decisions to the next
+    /// Factors of an error bound for a single ray. For the direction (X, Y, Z), the error of the
+    /// form's value is at most `rads[0]`·|X| + `rads[1]`·|Y| + `rads[2]`·|Z|. In the middle of a
+    /// very wide view, this is far less than `rad`, which holds in the whole window. `None` except
+    /// in the highest precision, because the other precisions leave doubtful decisions to the next
     /// one.
     rads: Option<Box<[T::Radius; 3]>>,
 }

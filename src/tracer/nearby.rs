@@ -23,7 +23,8 @@ pub fn nearby(world: &World, part: Area) -> Option<Vec<BoundedObject>> {
 
 /// Replaces `out` by the objects of `nearby` that rays through `part` may hit, in unchanged order.
 /// `nearby` is the result of the function [`nearby`] for an area that contains the part. If the
-/// whole part certainly shows one colour, returns the colour's index in the palette.
+/// whole part certainly shows one colour, returns the colour's index in the palette; otherwise
+/// returns `None`.
 pub fn in_part(
     world: &World,
     part: Area,

@@ -75,7 +75,7 @@ impl<T: Real> Object<T> {
     }
 
     /// Returns the nearest crossing in front of the eye. Returns `None` if the ray misses the
-    /// object.
+    /// object, and a [`Doubt`] if rounding errors leave this uncertain.
     #[inline]
     pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
         match self.surface_kind() {
@@ -93,8 +93,8 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// Returns whether the ray hits the second colour of a checkerboard. Returns `false` for every
-    /// other kind of object.
+    /// Returns whether the ray hits the second colour of a checkerboard, or a [`Doubt`] if rounding
+    /// errors leave this uncertain. Returns `false` for every other kind of object.
     #[inline]
     pub fn is_odd(&self, r: &Direction<T>) -> Result<bool, Doubt> {
         match self {

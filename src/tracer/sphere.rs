@@ -1,11 +1,12 @@
 //! The sphere: a conic in the view plane.
 //!
 //! In: a sphere's centre and radius, and the camera. Out: for a ray, its crossings; for a
-//! rectangle, the ranges of the crossings' inverse depths. Let c be the centre relative to the eye,
-//! R the radius, r the direction of a ray, and C = c·c − R² (the power of the eye). The ray λr hits
-//! the sphere where λ² r·r − 2λ c·r + C = 0. A quarter of the discriminant is Q = R² r·r − |c × r|²
-//! by Lagrange's identity. Unlike (c·r)² − (r·r) C, this does not subtract large squares if the
-//! sphere is small and far away.
+//! rectangle, the ranges of the crossings' inverse depths.
+//!
+//! Let c be the centre relative to the eye, R the radius, r the direction of a ray, and C = c·c −
+//! R² (the power of the eye). The ray λr hits the sphere where λ² r·r − 2λ c·r + C = 0. A quarter
+//! of the discriminant is Q = R² r·r − |c × r|² by Lagrange's identity. Unlike (c·r)² − (r·r) C,
+//! this does not subtract large squares if the sphere is small and far away.
 //!
 //! Q and c·r each have one error bound for all rays in the camera's window, which includes rounding
 //! errors. C is computed exactly if it is small.
@@ -139,7 +140,7 @@ impl<T: Real> Sphere<T> {
     }
 
     /// Returns the nearest crossing in front of the eye. Returns `None` if the ray misses or only
-    /// touches the sphere.
+    /// touches the sphere, and a [`Doubt`] if rounding errors leave this uncertain.
     #[inline]
     pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
         let (q, b) = self.discriminant(r);
@@ -178,8 +179,8 @@ impl<T: Real> Sphere<T> {
             rad: r.square.magnitude() * (SPHERE_ROUNDINGS * T::UNIT) + T::TINY * 8.0,
             mid: r.square.clone(),
         };
-        // Close to the inner surface of a huge sphere, Q is much smaller than R² r·r. There, the
-        // equal value (c·r)² − (r·r) C is more accurate.
+        // Close to the inner surface of a huge sphere, Q is much smaller than R² r·r. There, Q is
+        // computed more accurately as (c·r)² − (r·r) C.
         let other = b * b - &self.power * &square;
         let root = if other.rad < q.rad { &other } else { q }.sqrt();
         let inverse = if b.mid.is_negative() {

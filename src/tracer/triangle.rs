@@ -33,7 +33,7 @@ pub fn prepare<T: Real>(
 
 /// Prepares a triangle that is given by its vertices. Two triangles that share an edge compute the
 /// edge from the same two points. For a ray near this edge, their decisions therefore agree
-/// exactly.
+/// exactly. Returns `None` if the triangle's plane contains the eye.
 fn by_vertices<T: Real>(
     camera: &Camera<T>,
     vertices: &[DVec3; 3],
@@ -51,8 +51,8 @@ fn by_vertices<T: Real>(
 /// rays matters.
 fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> Ball3<T> {
     if !T::LAST {
-        // With a and b relative to the eye, a × b = a × (b − a). The difference b − a is computed
-        // without cancellation.
+        // a × b is computed as a × (b − a), where a and b are relative to the eye. The difference b
+        // − a is computed without cancellation.
         let along: Ball3<T> = array::from_fn(|i| Ball::difference(b[i], a[i]));
         let along = camera.turned(&scaled_to_one(&along));
         let normal = cross(&scaled_to_one(corner), &along);
@@ -89,10 +89,11 @@ fn by_centroid<T: Real>(
         array::from_fn(|i| c[i].scaled(far + exponent) + o[i].scaled(near + exponent))
     };
     // For the edge from the corner a to the corner b, computes a × b, the normal of the plane
-    // through the eye and the edge. With a = c + o and b = c + p, where c is the centroid and o and
-    // p are the offsets of a and b from it, a × b = c × (p − o) + o × p. If a × b were computed
-    // from a and b themselves, it would lose most digits for a small triangle that is far away. The
-    // length of the normal does not matter, so it is scaled by a power of two to about 1 at most.
+    // through the eye and the edge. Let a = c + o and b = c + p, where c is the centroid, and o and
+    // p are the offsets of a and b from the centroid. Then a × b = c × (p − o) + o × p. If a × b
+    // were computed from a and b themselves, it would lose most digits for a small triangle that is
+    // far away. The length of the normal does not matter, so it is scaled by a power of two to
+    // about 1 at most.
     let edge = |a: usize, b: usize| {
         let along: Ball3<T> = array::from_fn(|i| &offsets[b][i] - &offsets[a][i]);
         let turn = cross(&offsets[a], &offsets[b]);

@@ -42,14 +42,15 @@ fn a_roll_into_a_coordinate_plane_is_exact() {
 fn views_along_the_up_vector_are_oriented_like_a_map() {
     let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
     // Each case gives the view direction and the up vector, and then the world directions that
-    // appear to the right and upwards in the picture. In the first cases, the up vector is along
+    // appear to the right and upwards in the picture. The first four cases have an up vector along
     // the y axis.
     let cases = [
         ((-y, y), (x, -z)),
         ((y, y), (x, z)),
         ((-y, -y), (-x, z)),
         ((y, -y), (-x, -z)),
-        // In the following cases, the up vector is along the z or the x axis.
+        // The up vector is along the z axis in the next two cases, and along the x axis in the last
+        // two.
         ((-z, z), (x, y)),
         ((z, z), (x, -y)),
         ((-x, x), (-y, -z)),

@@ -110,11 +110,18 @@ fn a_cancelled_reading_does_not_start_or_stops_at_the_next_part() {
     for parts in [0, 1] {
         let cancel = AtomicBool::new(parts == 0);
         let mut handed = 0;
-        let all = syntax::parse_in_parts(&sources.file, SourceId::File, 1, &cancel, |_| {
-            handed += 1;
-            cancel.store(true, Ordering::Relaxed);
-            true
-        });
+        let all = syntax::parse_in_parts(
+            &sources.file,
+            SourceId::File,
+            1,
+            &cancel,
+            |it| it,
+            |_| {
+                handed += 1;
+                cancel.store(true, Ordering::Relaxed);
+                true
+            },
+        );
         assert_eq!((all, handed), (false, parts));
     }
     let cancel = AtomicBool::new(true);

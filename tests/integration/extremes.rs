@@ -52,9 +52,9 @@ fn assert_light(film: &Film, text: &str) {
 }
 
 /// Renders a scene with culling, sample by sample, and exactly, and compares the three pictures. If
-/// `is_decided` is false, the samples are not compared with the exact picture. This is needed if
-/// the squares of a distant checkerboard may be so small that the rounding of a hit decides its
-/// colour.
+/// `is_decided` is false, the samples are not compared with the exact picture. A distant
+/// checkerboard may have squares so small that the rounding of a hit decides which colour a sample
+/// has.
 fn render_in_each_way(scene: &Scene, text: &str, is_decided: bool) {
     let control = one_thread();
     let (world, sampling, whole) = (World::new(scene), sampling(scene), whole(scene));

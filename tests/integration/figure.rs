@@ -292,7 +292,8 @@ fn what_cannot_be_drawn_is_told_with_a_way_out() {
 #[test]
 fn the_whole_picture_is_searched_for_a_pixel_with_an_edge() {
     for (width, height) in [(160, 90), (100, 60), (400, 179), (128, 77), (65, 91)] {
-        // The picture is 4 high in the plane of the box, which is seen in its lower right corner.
+        // The box is small and appears in the lower right corner of the picture. At the box's
+        // depth, the picture is 4 m high.
         let aspect = f64::from(width) / f64::from(height);
         let (x, y) = (2.0 * aspect - 0.07, -2.0 + 0.07);
         let scene = read(&format!(

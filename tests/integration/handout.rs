@@ -1,5 +1,5 @@
-//! Compares the handout with its sources: the card, a short reference, with the tables of the
-//! language, and the HTML page with the files of the handout.
+//! Compares the handout with its sources. The card, a short reference, must agree with the tables
+//! of the scene language in the program. The HTML page must contain the files of the handout.
 
 use std::{
     fs,

@@ -304,8 +304,8 @@ fn inspect_lists_100_objects_and_summarizes_the_rest() {
         said.contains("  1_000 more, which --format json lists"),
         "{said}"
     );
-    // All objects except the first eight are beside the window, which is 17.8 m wide at their
-    // depth.
+    // The window is 17.8 m wide at the depth of the objects, so only the first eight objects are in
+    // it. The summary must state that 1000 others are outside.
     let rest = "  1_000 more: 0 seen, 0 %; 1_000 outside of the picture; 0 hidden or too small";
     assert!(said.contains(rest), "{said}");
     let json = folder.done("inspect a.scn --format json").json();
@@ -316,8 +316,8 @@ fn inspect_lists_100_objects_and_summarizes_the_rest() {
         100
     );
     assert_eq!(json["rest"]["outside"], 1000);
-    // The summary of all objects after the hundredth must state the same numbers of seen and
-    // outside objects as the list of these objects.
+    // The output lists the first 100 objects and summarizes the rest. The numbers in the summary
+    // must be those of the objects that are not listed.
     let picture = "image { width 96 height 54 } camera { eye (0, 0, 9) lookat (0, 0, 0) } ";
     let ball =
         |z: &str| format!("sphere for i < 15, j < 10 {{ center (i - 5, j - 4, {z}) radius 0.3 }}");

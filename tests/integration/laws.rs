@@ -164,7 +164,8 @@ fn assert_pictures_agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32;
         let (light, bound) = pixel(&one, x, y);
         let (other, other_bound) = pixel(&other, other_x, other_y);
         let difference = difference(light, other);
-        // Each of the two values may have a rounding error, for which `f64::EPSILON` is added.
+        // The light of each of the two pixels is rounded, which its error bound need not include.
+        // Therefore, `f64::EPSILON` is added.
         let most = bound + other_bound + f64::EPSILON;
         assert!(difference <= most, "{x}, {y}: {difference:e} of {before:?}");
         assert!(bound <= 1e-6, "{x}, {y}: {bound:e} of {before:?}");
@@ -221,7 +222,8 @@ fn scaling_by_a_power_of_two_changes_nothing() {
 
 #[test]
 fn a_mirror_in_x_mirrors_the_picture() {
-    // The numbers of columns alternate between even and odd.
+    // Pictures with an even and with an odd number of columns are tested in turn: with an odd
+    // number, the middle column is its own mirror image.
     for (world, width) in worlds(4, Method::Regular).zip([24, 23].into_iter().cycle()) {
         let world = resized(world, width, 24);
         let mirror = |v: DVec3| dvec3(-v.x, v.y, v.z);

@@ -93,8 +93,8 @@ fn a_lesson_is_solved_by_its_solution_alone() {
     }
 }
 
-/// Returns a scene with one random change: of a number, of a word behind `method`, or of the lines,
-/// of which one is left out. Comments stay.
+/// Returns a scene with one random change: a number or a sampling method is replaced, or a line is
+/// removed. The comment in the first line stays.
 fn edited(text: &str, random: &mut Random) -> String {
     let (comment, scene) = text.split_once('\n').unwrap();
     let is_digit = |at: usize| scene.as_bytes()[at].is_ascii_digit();
@@ -175,7 +175,8 @@ fn conditions_compare_values_ranges_lists_and_the_start() {
         ("inspect/camera/eye = [0, 1, 9]", false),
         ("inspect/camera/eye = [0, 1]", false),
         ("inspect/camera/far = null", true),
-        // A path that leads nowhere is not null, and no condition on it holds.
+        // A path to a value that does not exist is not equal to null, and no condition about it
+        // holds.
         ("inspect/camera/farther = null", false),
         ("inspect/camera/farther < 1", false),
         ("inspect/camera/looks = \"level\" // words", true),
@@ -219,7 +220,7 @@ fn the_error_keeps_the_number_of_samples_per_pixel_and_has_a_limit() {
         let lesson = parsed(&format!("```check\n{condition}\n```")).unwrap();
         solves(&lesson, &format!("{SCENE}sampler {{ {sampler} }}"), SCENE)
     };
-    // 4 samples per pixel of 800 × 450 pixels.
+    // Both samplers have 4 samples per pixel, because the picture has 800 × 450 pixels.
     for sampler in [
         "method regular per_pixel 4",
         "method regular total 1_440_000",
@@ -228,7 +229,13 @@ fn the_error_keeps_the_number_of_samples_per_pixel_and_has_a_limit() {
         assert!(!sampled(sampler, "error in 0..0.0025"), "{sampler}");
     }
     assert!(sampled("method exact", "error = 0"));
+    assert!(sampled("method exact per_pixel 1000", "error = 0"));
     assert!(!sampled("per_pixel 1000", "error >= 0"));
+    // An exact picture of so many edges takes too long.
+    let many =
+        "sphere for i < 60, j < 40 { center ((i - 30) / 9, (j - 20) / 9, -i / 9)  radius 0.9 }";
+    let lesson = parsed("```check\nerror >= 0\n```").unwrap();
+    assert!(!solves(&lesson, &format!("{SCENE}{many}"), SCENE));
 }
 
 #[test]
@@ -253,9 +260,18 @@ fn mistakes_in_conditions_have_a_place_and_help() {
         ("inspect/camera/looks = level", "level", "quotation marks"),
         ("inspect/camera/d < \"a\"", "\"a\"", "such as `20`"),
         ("inspect/camera/d in 3", "3", "20..30"),
-        ("inspect/camera/d in 3..2", "3..2", "20..30"),
+        ("inspect/camera/d in 3..2", "3..2", "the smaller end"),
         ("inspect/camera/d in start", "start", "start ± 2%"),
-        ("inspect/camera/d = start ± 2%", "start ± 2%", "`start`"),
+        (
+            "inspect/camera/d = start ± 2%",
+            "start ± 2%",
+            "`in start ± 2%`",
+        ),
+        (
+            "inspect/kind = \"a // b",
+            "\"a // b // words",
+            "quotation marks",
+        ),
         (
             "inspect/camera/d in start ± -2%",
             "start ± -2%",
@@ -278,13 +294,14 @@ fn mistakes_in_conditions_have_a_place_and_help() {
 #[test]
 fn conditions_are_those_of_check_blocks() {
     let nested = "```scn\nerror < 1\n```\n\n````check\n\n// a comment\nerror < 2\n```\nerror < 3\n````\n\
-                  error < 4\n~~~check\n  error < 5 // five\n~~~\n    ```check\nerror < 6\n";
+                  error < 4\n~~~check\n  error < 5 // five\n~~~\n ```check\nerror < 6\n```check of code```\n\
+                  ```check twice\nerror < 7\n```\n";
     let checks = parsed(nested).unwrap().checks;
     let lines = checks.iter().map(|it| it.iter().map(|it| it.line));
     let lines: Vec<Vec<_>> = lines.map(Iterator::collect).collect();
     assert_eq!(lines, [vec![8, 10], vec![14]]);
     let lesson =
-        parsed("```check\nerror < 2\n```\nerror < 4\r\n~~~check\r\n  error < 5 // five\r\n");
+        parsed("```check\nerror < 2\n```\nerror < 4\r\n~~~check\r\n  error < 5\t// five\r\n");
     let checks = lesson.unwrap().checks;
     let read = checks
         .iter()
@@ -313,6 +330,12 @@ fn lesson_check_prints_each_condition() {
         ("none.scn", SCENE),
         ("broken.md", LESSON),
         ("broken.scn", "camera {}"),
+        (
+            "typo.md",
+            "```check\ninspect/camera/fov_dg < 30\ninspect/camera/far > 3\n\n\
+             inspect/objects/Bal/radius = 1\n```\n",
+        ),
+        ("typo.scn", SCENE),
     ]);
     let said = folder.run("lesson check a.md a.scn");
     assert_eq!((said.status, said.text()), (1, ""));
@@ -355,6 +378,11 @@ fn lesson_check_prints_each_condition() {
         let said = folder.run(&format!("lesson check {line}"));
         assert_eq!(said.status, status, "{line}: {}", said.errors);
         assert!(said.errors.contains(words), "{line}: {}", said.errors);
+    }
+    let said = folder.run("lesson check typo.md a.scn");
+    assert_eq!(said.status, 1, "{}", said.errors);
+    for words in ["`fov_dg`", "`fov_deg`?", "`Bal`", "`Ball`?", "typo.md:5"] {
+        assert!(said.errors.contains(words), "{words}: {}", said.errors);
     }
     for name in ["missing", "none", "broken"] {
         let said = folder.run(&format!("studio --no-open --lesson {name}.md"));

@@ -2,7 +2,7 @@
 //! a whole.
 //!
 //! The program splits only long texts into parts of many bytes. With a part size of 1 byte, a text
-//! is split at every brace, so that even small texts have many parts.
+//! is split at every line end after a brace, so that even small texts have many parts.
 
 use std::sync::atomic::AtomicBool;
 
@@ -22,10 +22,17 @@ pub fn assert_same_in_parts(text: &str, bytes: usize, sets: &[&str]) -> bool {
     let whole = syntax::parse(&sources.file, SourceId::File);
     let mut items = Vec::new();
     let (file, wanted) = (&sources.file, AtomicBool::new(false));
-    let in_parts = syntax::parse_in_parts(file, SourceId::File, bytes, &wanted, |part| {
-        items.extend(part);
-        true
-    });
+    let in_parts = syntax::parse_in_parts(
+        file,
+        SourceId::File,
+        bytes,
+        &wanted,
+        |it| it,
+        |part| {
+            items.extend(part);
+            true
+        },
+    );
     let long = text.len() / 2 >= bytes;
     assert!(!in_parts || (long && whole.problems.is_empty()), "{text:?}");
     if in_parts {
@@ -89,14 +96,16 @@ fn mistakes_at_a_part_boundary_are_reported_as_in_the_whole_text() {
             format!("{text}\n{camera}"),
         ] {
             assert_same_in_parts(&text, 1, &[]);
-            assert_same_in_parts(&text, 20, &["image.width=64"]);
+            let lines = text.replace("} ", "}\n");
+            assert_same_in_parts(&lines, 1, &[]);
+            assert_same_in_parts(&lines, 20, &["image.width=64"]);
         }
     }
 }
 
 #[test]
 fn set_arguments_mean_the_same_when_the_text_is_read_in_parts() {
-    let text = "let a = 1 camera { eye (0, 2, 8) lookat (0, a, 0) } sphere Ball { center (0, a, 0) } let b = 2 sphere { center (b, 1, 0) }";
+    let text = "let a = 1 camera { eye (0, 2, 8) lookat (0, a, 0) }\nsphere Ball { center (0, a, 0) }\nlet b = 2 sphere { center (b, 1, 0) }\nsphere { center (0, 3, 0) }";
     for sets in lines(
         "
         image.width=64

@@ -291,9 +291,9 @@ fn other_files_permissions_and_reads_trigger_no_picture() {
     let permissions = fs::metadata(watch.path("a.scn")).unwrap().permissions();
     fs::set_permissions(watch.path("a.scn"), permissions).unwrap();
     watch.folder.read("a.scn");
-    // If the reading or the new permissions caused a picture, the program would render it after a
-    // short time without further changes. The test waits longer than this time, so that such a
-    // picture would be counted in addition to the picture of the next save.
+    // If reading the file or setting its permissions caused a picture, the program would render it
+    // within a short time. The test waits longer than this time. Such a picture would then be
+    // counted in addition to the picture of the next save.
     thread::sleep(Duration::from_millis(100));
     watch.becomes("blue");
     watch.wait("it says so", || watch.count("wrote") >= 2);

@@ -159,10 +159,10 @@ impl Class {
         self.students.extend(students);
     }
 
-    /// Excludes files of the assignment's template. A file that is equal in every submission comes
-    /// from the template. If it is a picture, it is kept in the list, but marked so that it is not
-    /// judged; otherwise, it is removed. However, if no student has another picture, the equal
-    /// pictures are judged, since all students may have rendered the same picture.
+    /// Excludes files of the assignment's template. A file that is equal in every submission is
+    /// assumed to come from the template. If it is a picture, it is kept in the list, but marked so
+    /// that it is not judged; otherwise, it is removed. However, if no student has another picture,
+    /// the equal pictures are judged, since all students may have rendered the same picture.
     fn leave_template(&self, students: &mut [Student], chosen: Option<&Glob>) {
         let is_folder = |student: &&mut Student| {
             let mut files = student.files.iter();
@@ -221,7 +221,7 @@ impl Class {
     }
 }
 
-/// Reads a file from disk or from a zip file.
+/// Reads a file from disk or from a zip file. Returns the reason if it cannot be read.
 fn bytes(file: &SubmittedFile, budget: &UnpackBudget) -> Result<Vec<u8>, String> {
     match &file.content {
         ContentSource::File(path) => {
@@ -292,21 +292,21 @@ fn with_companions(students: Vec<Student>) -> Vec<Student> {
     kept
 }
 
-/// Finds the arguments that a shell expanded from a pattern such as `class/*`, where `class` is a
-/// folder with the submissions of a class. Returns these folders. Each is mapped to the names of
-/// the arguments that lie directly in it.
+/// Detects that a shell expanded a pattern such as `class/*`, where `class` is a folder with the
+/// submissions of a class. Returns each such folder, with the names of the arguments that lie
+/// directly in it.
 ///
-/// The parent folder of an argument is taken for such a folder in three cases: the argument is a
-/// Git clone; its name is in Moodle's form or that of Gradescope's metadata file; or another
-/// argument in the same folder contains a picture of the same name.
+/// The parent folder of an argument is assumed to be the folder of a class in three cases: the
+/// argument is a Git clone; the argument's name has Moodle's form, or is that of Gradescope's
+/// metadata file; or another argument in the same folder contains a picture of the same name.
 fn expanded_classes(paths: &[PathBuf]) -> BTreeMap<&Path, BTreeSet<&OsStr>> {
     let mut named = BTreeMap::<&Path, BTreeSet<&OsStr>>::new();
     for path in paths {
         let is_list = name(path) == METADATA && path.is_file();
         let is_class = path.is_dir() || tree::is_zip(path) || is_list;
-        // The folders found here are listed later without following the links in them. A link on
-        // the command line must be followed, so it is left out here and read as a folder of its
-        // own. Paths such as `..` are left out, too, because they have no name.
+        // A class folder is listed later, and links in it are not followed then. A link on the
+        // command line must be followed, so it is not recorded here and is read as a folder of its
+        // own. A path such as `..` is not recorded either, because it has no name.
         if is_class && !path.is_symlink() && !name(path).is_empty() {
             named.entry(parent_of(path)).or_default().insert(name(path));
         }

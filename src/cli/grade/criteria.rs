@@ -27,9 +27,9 @@ pub enum Criterion {
     Hits,
 }
 
-/// Criteria, each with the beginnings of its mistakes' ids, separated by spaces. For example,
-/// `board_` stands for all ids that begin with `board_`. An id that is not found here is the name
-/// of a field of the camera or of an object.
+/// Criteria, each with the beginnings of the ids of its mistakes. The beginnings are separated by
+/// spaces. For example, `board_` stands for all ids that begin with `board_`. An id that is not
+/// found here is the name of a field of the camera or of an object.
 const BEGINNINGS: &[(Criterion, &str)] = &[
     (Criterion::Board, "board_"),
     (

@@ -101,8 +101,8 @@ fn criteria(scene: &Scene) -> Vec<(Criterion, String)> {
     all
 }
 
-/// Returns a folder name for each student, made from the student's name. No two names differ only
-/// in case, and all names are valid on all systems.
+/// Returns a folder name for each student, made from the student's name. All names are valid on all
+/// systems, and they are distinct even if upper and lower case are not distinguished.
 pub fn folders(graded: &[GradedStudent]) -> Vec<String> {
     let mut taken = std::collections::BTreeSet::new();
     let name = |one: &GradedStudent| {

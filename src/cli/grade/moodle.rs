@@ -159,7 +159,9 @@ pub fn filled(
     Ok(out)
 }
 
-/// Parses an argument of `--columns`: the English heading, and the heading in the worksheet.
+/// Parses an argument of `--columns`, such as `Grade=Bewertung`: the English heading, and the
+/// heading in the worksheet. Returns an error if the first one is no column of the worksheet, or if
+/// the second one is missing.
 fn renamed(text: &str) -> Result<(&'static str, &str), Trouble> {
     let (name, heading) = text.split_once('=').unwrap_or((text, ""));
     let mut headings = HEADINGS.into_iter();

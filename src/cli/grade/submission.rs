@@ -69,7 +69,8 @@ pub enum ContentSource {
 
 impl SubmittedFile {
     /// Reads a file that should be a picture. If the first bytes of a file on disk are not those of
-    /// a picture, only the start of the file is read.
+    /// a picture, only the start of the file is read. Returns the reason if the file cannot be
+    /// read.
     pub fn picture(&self, large: &LargeArgs, budget: &UnpackBudget) -> Result<Vec<u8>, String> {
         match &self.content {
             ContentSource::File(path) => {

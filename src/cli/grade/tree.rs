@@ -79,7 +79,8 @@ impl FileTree {
     }
 
     /// Lists a zip file. A zip file may contain a single folder with everything else in it. If this
-    /// folder seems to contain a class, its content is listed, without the folder itself.
+    /// folder seems to contain a class, its content is listed, without the folder itself. Returns
+    /// the reason if the zip file cannot be read.
     pub fn of_zip(path: &Path) -> Result<Self, String> {
         let mut tree = Self::at(path);
         tree.unpack(path, &[])?;
@@ -101,7 +102,8 @@ impl FileTree {
     }
 
     /// Lists a subfolder. `before` is its path as a list of names, relative to the folder on the
-    /// command line.
+    /// command line. Returns an error if the subfolder cannot be read, or if there are too many
+    /// files.
     fn walk(&mut self, folder: &Path, before: &[String], own: &[&Path]) -> io::Result<()> {
         let entries = fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>()?;
         self.walk_entries(entries, before, own)
@@ -200,6 +202,7 @@ impl FileTree {
     }
 
     /// Adds the entries of a zip file. `before` is the path of the zip file as a list of names.
+    /// Returns the reason if the zip file cannot be read or has too many entries.
     fn unpack(&mut self, path: &Path, before: &[String]) -> Result<(), String> {
         let (archive, entries) = Archive::open(path)?;
         let archive = Arc::new(archive);

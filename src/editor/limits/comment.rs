@@ -18,9 +18,9 @@ pub struct CommentRange {
 
 impl CommentRange {
     /// Returns the step and the ends of the slider. If the comment gives no step, uses
-    /// `default_step`. If a number of the range was converted between degrees and radians, rounds
-    /// the step to two significant digits, and moves the ends inwards to numbers with as many
-    /// decimals as the step.
+    /// `default_step`. A range that was converted between degrees and radians gets short numbers:
+    /// the step is rounded to two significant digits, and the ends are moved inwards to numbers
+    /// with as many decimals as the step. Any other range stays as it was written.
     pub fn rounded(self, default_step: f64) -> (f64, [f64; 2]) {
         let step = self.step.unwrap_or(default_step);
         if !self.is_converted {
@@ -79,7 +79,8 @@ pub fn parse(range: &str, unit: Option<Unit>) -> Result<CommentRange, String> {
 }
 
 /// Parses a number of a range, and converts it to `unit`, the unit of the slider's value. A number
-/// without a unit is not converted. Returns the number, and whether it was converted.
+/// without a unit is not converted. Returns the number, and whether it was converted. If it is not
+/// a number, or has a unit although the value has none, returns a message that says so.
 fn in_unit(written: &str, unit: Option<Unit>) -> Result<(f64, bool), String> {
     let mut units = [Unit::Degrees, Unit::Radians].into_iter();
     let own = units.find(|unit| written.ends_with(unit.name()));

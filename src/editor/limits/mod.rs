@@ -170,8 +170,9 @@ fn tried(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> 
     let reach = middle.abs().max(steps * step);
     let ends = [middle - reach, middle + reach].map(|end| bounded(rounded(end, step)));
     let valid = ends.map(|end| trials.last_right(literal, end, step, is_count));
-    // If even the first step in either direction causes an error, the ends before the search are
-    // used. Otherwise, both ends would be the current number, and the slider could not move.
+    // If even the first step in either direction causes an error, the slider keeps the ends that it
+    // had before the search. Otherwise, both ends would be the current number, and the slider could
+    // not move.
     let valid = if valid == [None, None] {
         ends
     } else {

@@ -132,10 +132,10 @@ fn errors(analysis: &Analysis<'_>) -> usize {
 mod tests {
     use super::*;
 
-    /// Searches two texts for the greatest valid n up to 14, with the result 14 in both cases. In
-    /// the first text, the change to 14 is tried, which reduces the budget `left`. The second text
-    /// has five indices with the count n, so n = 14 would make 14^5 objects, half a million. This
-    /// trial would be too expensive: 14 is accepted untried, and `left` stays at [`BYTES`].
+    /// `last_right` looks for the largest number of repetitions, up to 14, that causes no error. If
+    /// a block has one index, `last_right` analyzes the scene with 14, which uses up a part of the
+    /// budget `left`. If it has five, 14 would make 14^5 objects, half a million. Analyzing them
+    /// would take too long, so 14 is accepted without a trial, and `left` stays the same.
     #[test]
     fn a_count_is_not_tried_where_it_would_make_very_many_objects() {
         let heads = [

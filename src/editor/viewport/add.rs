@@ -149,7 +149,7 @@ fn sketch(analysis: &Analysis<'_>) -> Option<Scene> {
 /// Returns the edit that inserts a copy of an object's block in the line after it. The copy is
 /// moved to the right by a twentieth of the picture's width. The move changes only numbers within
 /// the block. If the position is given by the names of definitions, the copy stays in the same
-/// place.
+/// place. Returns `None` if there is no object with the index `index`.
 pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option<Added> {
     let object = scene.objects.get(index)?;
     let block = analysis.blocks().find(|block| block.span == object.span)?;

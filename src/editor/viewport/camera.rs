@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 
-use super::handles::{TOO_FAR, handles, unit, within_half_turn};
+use super::handles::{TOO_FAR, handles, within_half_turn};
 use crate::{
-    math::{Angle, trig},
+    math::{Angle, trig, unit},
     probe::probe,
     projection::Projection,
     scene::{Camera, FieldOwner, Lens, Scene, View},

@@ -46,12 +46,12 @@ pub struct Drag<'a> {
     pub to: DVec2,
     /// Axis or plane along which the handle moves; `None` if it follows the pointer freely.
     pub along: Option<Along>,
-    /// Maximum distance in the picture, in pixels, between neighbouring positions of the handle on
-    /// a grid. `None` if the drag does not snap to a grid. The changed numbers become multiples of
-    /// a power of ten, which is as large as this distance permits.
+    /// Maximum distance, in pixels of the picture, between neighbouring points of the grid to which
+    /// the handle snaps. `None` if the drag does not snap to a grid. The changed numbers become
+    /// multiples of a power of ten, the largest for which the points are near enough.
     pub step: Option<f64>,
-    /// The observer in whose picture the pointer is; `None` if it is in the picture of the scene's
-    /// own camera.
+    /// Second camera that looks at the scene from outside, if the pointer is in its picture; `None`
+    /// if the pointer is in the picture of the scene's own camera.
     pub observer: Option<Observer>,
 }
 
@@ -198,7 +198,8 @@ pub fn drag(
         let changes = &changes;
         let edits = edits(analysis, block, changes, &rounding);
         // If the drag snaps back to the old position, no edit is needed. If the numbers of the text
-        // are in another unit than the grid, they may also have too few decimals yet.
+        // are in another unit than the grid, an empty list of edits does not prove this: the number
+        // of decimals may still be too small to show the change. The pictures are then compared.
         let is_back = snapped.is_some() && rounded(current, changes, &rounding) == Some(current);
         let is_unchanged = snapped.is_some() && edits.as_ref().is_some_and(Vec::is_empty);
         if is_back || (is_unchanged && view.agree(ideal, current, tolerance)) {
@@ -301,7 +302,8 @@ fn owner(scene: &Scene, object: Option<usize>) -> Option<FieldOwner> {
     })
 }
 
-/// Returns the block of the dragged object or camera, and its name for messages.
+/// Returns the block of the dragged object or camera, and its name for messages. Returns `None` if
+/// the text has no such block.
 fn block<'a, 's>(
     analysis: &'a Analysis<'s>,
     scene: &Scene,
@@ -399,17 +401,18 @@ struct DragView<'a> {
     image: &'a Image,
     projection: Projection,
     drag: &'a Drag<'a>,
-    /// Points in space by which two results of the drag are compared if the camera, in its own
-    /// picture, or a checkerboard is dragged. Two results agree if these points appear at nearly
-    /// equal places of the picture.
+    /// Points in space by which two results of the drag are compared: for a checkerboard, and for
+    /// the camera if it is dragged in its own picture. Two results agree if these points appear at
+    /// nearly equal places of the picture.
     points: Vec<DVec3>,
 }
 
 impl DragView<'_> {
     /// Returns the number of decimals to which the drag rounds numbers, and the tolerance of the
-    /// drag in pixels, which is `step`. The number of decimals is the smallest for which one unit
-    /// in the last decimal moves the handle by at most `step`. Returns `None` for the camera in its
-    /// own picture, or if 12 decimals do not suffice.
+    /// drag in pixels, which is `step`. The number of decimals is the smallest with which a change
+    /// of the last decimal by one moves the handle by at most `step` pixels. Returns `None` if 12
+    /// decimals do not suffice, or if the camera is dragged in its own picture, where it has no
+    /// handles.
     fn snapped(&self, owner: FieldOwner, changes: &[FieldChange], step: f64) -> Option<(i32, f64)> {
         let held = |owner: FieldOwner| {
             let mut marks = self.marks(owner).into_iter();
@@ -452,11 +455,15 @@ impl DragView<'_> {
     }
 
     /// Returns the points of the picture by which two states of the dragged object or camera are
-    /// compared. For the camera, they are the images of `self.points`; for a checkerboard, the
-    /// images of the board's points above or below `self.points`; for another object, its handles.
-    /// A point is `None` if the eye cannot see it, for example because it is behind the eye. The
-    /// flag of each point says whether the pointer drags it; a camera and a checkerboard are
-    /// dragged by all their points.
+    /// compared. They depend on what is dragged:
+    ///
+    /// - the camera in its own picture: the images of `self.points`;
+    /// - a checkerboard: the images of the board's points above or below `self.points`;
+    /// - anything else: its handles.
+    ///
+    /// The flag is true for a point that the pointer drags: the dragged handle, or every point of a
+    /// camera in its own picture or of a checkerboard. The position is `None` if the point is not
+    /// visible, for example because it is behind the eye.
     fn marks(&self, owner: FieldOwner) -> Vec<(bool, Option<DVec2>)> {
         let points = self.points.iter();
         match owner {

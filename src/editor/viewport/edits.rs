@@ -272,7 +272,8 @@ impl<'s> NumberWriter<'_, 's> {
     }
 
     /// Changes the literal at the end of a sum or difference. If the literal would become negative,
-    /// the operator before it changes instead: `+ 1` becomes `- 1` rather than `+ -1`.
+    /// the operator before it changes instead: `+ 1` becomes `- 1` rather than `+ -1`. Returns
+    /// `None` if no edits can achieve the change.
     fn change_last(&mut self, step: &Step<'s>, by: Value) -> Option<()> {
         let (sign, other) = match step.operator {
             Operator::Subtract => (-1.0, '+'),
@@ -289,7 +290,8 @@ impl<'s> NumberWriter<'_, 's> {
         Some(())
     }
 
-    /// Adds an edit that appends an offset, such as `+ 0.5`, to an expression.
+    /// Adds an edit that appends an offset, such as `+ 0.5`, to an expression. Returns `None` if
+    /// the type of `by` has no negatives or multiples, as a colour.
     fn offset(&mut self, behind: Span, by: Value) -> Option<()> {
         let zero = operate(Operator::Multiply, Value::Number(0.0), by)?;
         let text = self.sum(zero, by, Unit::Degrees);

@@ -23,11 +23,14 @@ use crate::{
 pub const SAMPLE_COUNTS: [u64; 5] = [1, 4, 16, 64, 256];
 
 /// Number of seeds over which the errors of a method are averaged. With 32, the root mean square of
-/// independent errors is known to within about an eighth.
+/// independent errors is known to within about an eighth. Halving this uncertainty would need four
+/// times as many seeds, and four times the time.
 const SEEDS: u64 = 32;
 
-/// Number of rows, and of columns, of points at which the pixel is examined: those of the method
-/// `regular`. Each becomes a pixel of the enlarged picture.
+/// Number of rows, and of columns, of the points at which the pixel is examined. The points form an
+/// even grid, like the samples of the method `regular`. Each becomes a pixel of the enlarged
+/// picture. With a larger number, smaller areas of a colour would be found, but the answer to the
+/// editor would take longer.
 const ROWS: u32 = 128;
 
 /// A pixel under the magnifying glass.
@@ -35,7 +38,8 @@ const ROWS: u32 = 128;
 pub struct Glass {
     /// What the pixel shows, the colour with the largest area first.
     pub seen: Vec<SeenColor>,
-    /// The pixel, enlarged to 128 × 128 pixels. Each has the colour of its middle.
+    /// The pixel, enlarged to a picture of 128 × 128 pixels. Each of these has the colour that is
+    /// seen in its middle.
     pub enlarged: Film<[u8; 3]>,
     /// Exact mean colour, in linear light, with its error bound.
     pub exact: ExactPixel,
@@ -76,13 +80,11 @@ pub fn glass(scene: &Scene, world: &World, pixel: [u32; 2]) -> Glass {
     let exact = exact.and_then(|pixels| pixels.first().copied());
     let exact = exact.expect("the integrator was not cancelled");
     let errors = Method::SAMPLED.map(|method| errors(&scene.sampler, method, world, pixel, &exact));
-    let slots: Vec<usize> = (0..ROWS * ROWS)
-        .map(|at| world.slot_at(x, y, offset(at % ROWS, at / ROWS)))
-        .collect();
+    let slots = slots(world, pixel);
     let colors = slots.iter().map(|&slot| world.palette()[slot].to_bytes());
     let enlarged = Film::from_pixels(ROWS, ROWS, colors.collect());
     Glass {
-        seen: seen(scene, world, pixel, &slots),
+        seen: seen_in(scene, world, pixel, &slots),
         enlarged: enlarged.expect("each point is a pixel"),
         exact,
         errors: errors.into(),
@@ -94,9 +96,19 @@ fn offset(i: u32, j: u32) -> DVec2 {
     (DVec2::new(f64::from(i), f64::from(j)) + 0.5) / f64::from(ROWS) - 0.5
 }
 
-/// Returns the colours that a pixel shows, the one with the largest area first. `slots` has the
-/// palette index of each point, row by row.
-fn seen(scene: &Scene, world: &World, [x, y]: [u32; 2], slots: &[usize]) -> Vec<SeenColor> {
+/// Returns the palette index of what is seen at each point of a pixel, row by row.
+fn slots(world: &World, [x, y]: [u32; 2]) -> Vec<usize> {
+    let at = |point: u32| world.slot_at(x, y, offset(point % ROWS, point / ROWS));
+    (0..ROWS * ROWS).map(at).collect()
+}
+
+/// Returns the colours that a pixel shows, the one with the largest area first. `world` must be
+/// that of the scene.
+pub fn seen_colors(scene: &Scene, world: &World, pixel: [u32; 2]) -> Vec<SeenColor> {
+    seen_in(scene, world, pixel, &slots(world, pixel))
+}
+
+fn seen_in(scene: &Scene, world: &World, [x, y]: [u32; 2], slots: &[usize]) -> Vec<SeenColor> {
     let mut points = vec![None; world.palette().len()];
     for (at, &slot) in (0..).zip(slots) {
         points[slot].get_or_insert(offset(at % ROWS, at / ROWS));

@@ -3,9 +3,12 @@
 
 use glam::{DVec2, DVec3};
 
-use super::lines::Polyline;
+use super::{
+    lines::Polyline,
+    silhouette::{self, circle},
+};
 use crate::{
-    math::{Angle, trig},
+    math::{Angle, trig, unit},
     projection::Projection,
     scene::{
         CenteredTriangle, Checkerboard, Cuboid, FieldOwner, Shape, Sphere, Triangle,
@@ -66,10 +69,6 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// smaller coordinate comes first.
 const FACES: [&str; 6] = ["min_x", "max_x", "min_y", "max_y", "min_z", "max_z"];
 
-/// Number of sides of the polygon that is drawn as a sphere's silhouette. Chosen by judgment: fewer
-/// sides would look angular on large spheres, more would only lengthen the answer to the editor.
-const SIDES: u32 = 64;
-
 /// Returns the handles of an object. The handle of a sphere's radius lies on the silhouette, in the
 /// direction `towards` from the centre.
 pub fn handles(shape: &Shape, projection: &Projection, towards: DVec3) -> Vec<Handle> {
@@ -78,7 +77,7 @@ pub fn handles(shape: &Shape, projection: &Projection, towards: DVec3) -> Vec<Ha
             (SPHERE.center.name, Some(sphere.center)),
             (
                 SPHERE.radius.name,
-                outline_point(sphere, projection.eye, towards),
+                silhouette::point(sphere, projection.eye, towards),
             ),
         ],
         Shape::Box(Cuboid { min, max, .. }) => {
@@ -166,18 +165,6 @@ pub fn outline(projection: &Projection, shape: &Shape) -> Vec<Polyline> {
     }
 }
 
-/// Returns points along the whole silhouette of the sphere as seen from the eye. The points are
-/// `None` if the eye is inside the sphere.
-fn circle(projection: &Projection, sphere: &Sphere) -> impl Iterator<Item = Option<DVec3>> {
-    let axis = (sphere.center - projection.eye).normalize_or(projection.ahead);
-    let (first, second) = axis.any_orthonormal_pair();
-    (0..=SIDES).map(move |side| {
-        let angle = Angle::from_degrees(360.0 * f64::from(side) / f64::from(SIDES));
-        let towards = first * trig::cos(angle) + second * trig::sin(angle);
-        outline_point(sphere, projection.eye, towards)
-    })
-}
-
 /// Returns the outline of the checkerboard's square that the view axis hits.
 fn square(projection: &Projection, board: &Checkerboard) -> Vec<Polyline> {
     let met = projection.on_plane(projection.size / 2.0, DVec3::Y * board.y, DVec3::Y);
@@ -187,31 +174,6 @@ fn square(projection: &Projection, board: &Checkerboard) -> Vec<Polyline> {
         let [x, z] = [DVec3::X * side, DVec3::Z * side];
         projection.line(&[corner, corner + x, corner + x + z, corner + z, corner])
     })
-}
-
-/// Returns the silhouette point of a sphere in the direction `towards`, i.e. a point where a ray
-/// from the eye is tangent to the sphere. Returns `None` if the eye is inside the sphere.
-///
-/// Let r be the radius, c the vector from the eye to the centre, k = r/|c|, and t the unit vector
-/// in the direction of `towards` perpendicular to c. Relative to the eye, the point is
-///
-///   (1 − k²)·c + r·√(1 − k²)·t.
-fn outline_point(sphere: &Sphere, eye: DVec3, towards: DVec3) -> Option<DVec3> {
-    let (axis, distance) = unit(sphere.center - eye);
-    let across = towards - axis * towards.dot(axis);
-    let k = sphere.radius / distance;
-    let rest = (1.0 - k) * (1.0 + k);
-    let side = unit(across).0 * (sphere.radius * rest.sqrt());
-    let at = eye + axis * (distance * rest) + side;
-    (k < 1.0 && at.is_finite()).then_some(at)
-}
-
-/// Returns the unit vector in the direction of `v`, and the length of `v`. No intermediate result
-/// overflows.
-pub fn unit(v: DVec3) -> (DVec3, f64) {
-    let greatest = v.abs().max_element();
-    let scaled = v / greatest;
-    (scaled.normalize(), scaled.length() * greatest)
 }
 
 /// Returns the object after the handle `handle` was dragged to the point `to` of the picture, or as
@@ -374,11 +336,10 @@ fn radius(sphere: &Sphere, to: DVec2, projection: &Projection) -> Result<f64, St
     }
 }
 
-/// Returns the vector at the point `foot` whose tip, drawn at the distance `reach` from there,
-/// appears at the point `to` of the picture. It has the length of the current vector, `vector`. If
-/// the tips of two vectors appear there, returns the one on the same side of the view ray as the
-/// current one: towards the eye, or away from it. If none does, returns the vector whose tip
-/// appears nearest.
+/// Returns a vector as long as `vector`, turned so that its drawn arrow ends at the point `to` of
+/// the picture. The arrow starts at the point `foot` in space and has the length `reach`. Two
+/// directions may do this; the result points towards the eye or away from it, as `vector` does. If
+/// no direction does it, returns the one whose arrow ends nearest to `to`.
 pub fn turned_vector(
     foot: DVec3,
     vector: DVec3,

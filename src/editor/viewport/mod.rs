@@ -5,11 +5,12 @@
 //! points, and edits of the text. Points are computed in `f64`, which is accurate enough for a
 //! screen; the tracer decides which object is visible.
 //!
-//! `lines` projects lines into the picture. `handles` computes the handles of an object and moves
-//! the object, `camera` moves the camera, and `edits` writes the changed fields into the text.
-//! `drag` combines them. `add` writes new blocks. `pick` and `glass` look at one point and at one
-//! pixel. `observer` is a second camera, from which the scene is shown together with its own;
-//! `outside` draws that one there, and moves it.
+//! `lines` projects lines into the picture, and `silhouette` computes that of a sphere. `handles`
+//! computes the handles of an object and moves the object, `camera` moves the camera, and `edits`
+//! writes the changed fields into the text. `drag` combines them. `add` writes new blocks. `pick`
+//! and `glass` look at one point and at one pixel. `observer` chooses a second camera, which looks
+//! at the scene and at the scene's camera from outside. `outside` draws the scene's camera in this
+//! second picture, and moves it there.
 
 mod add;
 mod camera;
@@ -22,6 +23,7 @@ mod observer;
 mod outside;
 mod overlays;
 mod pick;
+mod silhouette;
 
 use super::analysis::Analysis;
 use crate::{
@@ -31,7 +33,7 @@ use crate::{
 
 pub use add::{Added, add, duplicate};
 pub use drag::{Drag, Dragged, alone, drag};
-pub use glass::{Glass, MethodErrors, SAMPLE_COUNTS, SeenColor, glass};
+pub use glass::{Glass, MethodErrors, SAMPLE_COUNTS, SeenColor, glass, seen_colors};
 pub use handles::Along;
 pub use lines::clip;
 pub use observer::{Observer, USUAL_FOV, beside};

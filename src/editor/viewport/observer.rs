@@ -6,26 +6,25 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{camera, handles::unit, outside::camera_handles};
+use super::{camera, outside::camera_handles};
 use crate::{
     color::Color,
-    math::{Angle, trig},
+    math::{Angle, trig, unit},
     projection::Projection,
     scene::{Camera, FieldOwner, Image, Lens, Scene, Shape, View},
     schema::CAMERA,
 };
 
-/// Angle, in degrees, that the height of the observer's picture takes up unless the client names
-/// another one. With a smaller angle, parallel lines look more parallel, and the view shows less
-/// depth. Chosen by eye.
+/// Default vertical field of view of the observer, in degrees. The client may give another. With a
+/// smaller angle, parallel lines look more parallel, and the view shows less depth. Chosen by eye.
 pub const USUAL_FOV: f64 = 30.0;
 
-/// Part of the observer's picture that the shown points fill at most. The rest is a margin, in
-/// which a handle can be dragged outwards, and labels have room. Chosen by eye.
+/// Maximum share of the width and height of the observer's picture that the shown points fill. The
+/// rest is a margin for labels, and for dragging a handle outwards. Chosen by eye.
 const FILLED: f64 = 0.75;
 
-/// Maximum distance from the eye to the point that the camera looks at, as a multiple of the
-/// distance from the eye to a corner of the window. A point farther away is left out, since the
+/// Maximum distance from the eye to another point that the observer must see, as a multiple of the
+/// distance from the eye to a corner of the window. Points farther away are left out, since the
 /// window would otherwise be too small to be recognised.
 const FARTHEST: f64 = 60.0;
 
@@ -34,13 +33,14 @@ const FARTHEST: f64 = 60.0;
 /// 1.8e308.
 const MOST: f64 = 1e100;
 
-/// Least distance from the observer to what it looks at, as a fraction of the greatest coordinate.
-/// It must be well above the rounding errors of coordinates, about 1e-16, so that the observer does
-/// not look at its own eye.
+/// Minimum distance from the observer to the point that it looks at, as a fraction of the greatest
+/// coordinate of that point. The fraction must be well above the rounding errors of coordinates,
+/// about 1e-16, so that the observer does not look at its own eye.
 const NEAREST: f64 = 1e-9;
 
-/// Number of times that the view is centred. Each time changes the distance, and thereby the middle
-/// of what is seen, by less than the time before.
+/// Number of times that the observer is moved so that the shown points are in the middle of its
+/// picture. Each move changes the distance, so the points are no longer exactly in the middle, but
+/// the error shrinks each time. With fewer moves, the points would be visibly off the middle.
 const ROUNDS: usize = 4;
 
 /// A camera beside the scene's own, which shows the scene from outside.
@@ -52,7 +52,7 @@ pub struct Observer {
     pub lookat: DVec3,
     /// The observer's up vector.
     pub up: DVec3,
-    /// Angle that the height of the observer's picture takes up, in degrees.
+    /// Vertical field of view of the observer, in degrees.
     pub fov: f64,
     /// Width and height of the observer's picture, in pixels.
     pub size: [u32; 2],
@@ -99,7 +99,7 @@ impl Observer {
         Projection::new(&self.camera(), &image)
     }
 
-    /// Returns whether the language's conditions hold for a camera and a picture of these values.
+    /// Returns whether the observer's camera and its picture meet the language's conditions.
     pub fn is_possible(&self) -> bool {
         let most = 1 << 20;
         let is_size = |side: &u32| (1..=most).contains(side);
@@ -110,8 +110,9 @@ impl Observer {
     }
 
     /// Returns the observer that sees the eye, the window and the objects near them as large as
-    /// possible. It stands in the direction `from`; if that is `None`, to the right of the scene's
-    /// camera, behind it and above it, so that the view axis runs to the right.
+    /// possible. `from` is the direction from these points to the observer. If it is `None`, the
+    /// observer is to the right of the scene's camera, behind it and above it, so that the view
+    /// axis runs to the right in the picture.
     pub fn around(scene: &Scene, from: Option<DVec3>, up: DVec3, fov: f64, size: [u32; 2]) -> Self {
         let own = Projection::new(&scene.camera, &scene.image);
         let points = shown_points(scene, &own);
@@ -134,7 +135,8 @@ impl Observer {
         let projection = observer.projection();
         let half = trig::tan(Angle::from_degrees(fov / 2.0)) * FILLED;
         let slope = DVec2::new(half * f64::from(size[0]) / f64::from(size[1]), half);
-        // Coordinates along the picture's right and top, and towards the observer.
+        // Returns two coordinates of a point along the picture's right and top, and a third one
+        // towards the observer.
         let turned = |it: DVec3| {
             let DVec3 { x, y, z } =
                 DVec3::from([projection.right, projection.top, side].map(|axis| it.dot(axis)));
@@ -170,9 +172,14 @@ pub fn beside(camera: &Projection) -> DVec3 {
 }
 
 /// Returns the points that an observer must see: the eye with its up vector, the corners of the
-/// window, the point that the camera looks at, and the extreme points of the objects near them: of
-/// the nearest object, and of those that are not much larger or farther away than it, the window
-/// and that point.
+/// window, the point that the camera looks at, the handle of the far plane, and the ends of the
+/// objects along each axis.
+///
+/// An object is left out if it is too large or too far away. Its radius and the distance of its far
+/// side from the eye are compared with the greatest of three distances from the eye: those of the
+/// window, of the nearest object and of the point that the camera looks at. The radius must be less
+/// than 1.6 times this distance, and the far side nearer than 2.4 times. The handle of the far
+/// plane, too, is left out unless it is nearer than 2.4 times this distance.
 fn shown_points(scene: &Scene, own: &Projection) -> Vec<DVec3> {
     let (eye, d) = (own.eye, scene.camera.view_height / (own.pitch * own.size.y));
     let corners = [
@@ -198,8 +205,11 @@ fn shown_points(scene: &Scene, own: &Projection) -> Vec<DVec3> {
     points.extend(corners);
     points.extend(distance.map(|distance| eye + own.ahead * distance));
     let handles = camera_handles(&scene.camera, &scene.image).into_iter();
-    let up = handles.filter(|(name, _)| *name == CAMERA.up.name);
-    points.extend(up.map(|(_, at)| at));
+    let is_shown = |(name, at): &(&str, DVec3)| match *name {
+        name if name == CAMERA.far.name => at.distance(eye) < 1.5 * reach,
+        name => name == CAMERA.up.name,
+    };
+    points.extend(handles.filter(is_shown).map(|(_, at)| at));
     for (middle, radius, end) in bodies() {
         if radius < reach && end < 1.5 * reach {
             points.extend(DVec3::AXES.map(|axis| middle + axis * radius));

@@ -1,28 +1,31 @@
-//! Draws the scene's camera as an observer beside it sees it, and moves it by its handles there.
+//! Draws the scene's camera as a second camera, the observer, sees it, and moves the scene's camera
+//! when a handle in this drawing is dragged.
 //!
 //! In: the scene's camera, and the projection of the observer. Out: lines and handles in the
-//! observer's picture; the camera after a handle was dragged. The window moves along the view axis
-//! and keeps its size: this changes `d`, or the angle of a camera that has `fov` or `hfov`. Its
-//! edge changes `view_height`, or opens that angle.
+//! observer's picture; the camera after a handle was dragged. The handle in the middle of the
+//! window moves the window along the view axis and keeps its size. This changes `d`, or the angle
+//! of a camera that has `fov` or `hfov`. The handle at the window's edge changes `view_height`, or
+//! the angle of such a camera.
 
 use glam::{DVec2, DVec3};
 
 use super::{
     Along,
-    handles::{TOO_FAR, appears_at, moved_point, on_line, turned_vector, unit},
+    handles::{TOO_FAR, appears_at, moved_point, on_line, turned_vector},
     lines::Polyline,
 };
 use crate::{
     inspect::inspect_camera,
-    math::{Angle, trig},
+    math::{Angle, trig, unit},
     numbers::short,
     projection::Projection,
     scene::{Camera, FieldOwner, Image, Lens, View},
     schema::CAMERA,
 };
 
-/// Length of a line that has no end, as a multiple of the greater one of the distances from the eye
-/// to the window and to what it looks at. At this distance, parallel lines appear to have met.
+/// Length with which an infinite line is drawn, as a multiple of the distance from the eye to the
+/// window or to the point that the camera looks at, whichever is greater. It is long enough that
+/// parallel lines seem to meet at their ends.
 const ENDLESS: f64 = 1e4;
 
 /// Length of the drawn up vector, as a fraction of the distance from the eye to what it looks at.
@@ -36,8 +39,8 @@ pub struct CameraOverlay {
     pub lines: Vec<(&'static str, Vec<Polyline>)>,
     /// Handles of the camera.
     pub handles: Vec<CameraHandle>,
-    /// Points where the pointed-at ray passes through the window and where it ends, as far as they
-    /// are seen.
+    /// Up to two points on the ray at which the user points: where the ray passes through the
+    /// window, and where it ends. A point that the observer cannot see is left out.
     pub met: Vec<DVec2>,
 }
 
@@ -48,11 +51,11 @@ pub struct CameraHandle {
     pub name: &'static str,
     /// Position in the observer's picture; `None` if it is not seen.
     pub at: Option<DVec2>,
-    /// What the handle is, with its value.
+    /// Text for the user: what the handle changes and, if it is a number, its current value.
     pub label: String,
 }
 
-/// A ray of the camera that the client points at.
+/// Ray of the scene's camera at which the user points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointedRay {
     /// Point of the scene's own picture.
@@ -61,16 +64,17 @@ pub struct PointedRay {
     pub end: Option<DVec3>,
 }
 
-/// Places in space that the camera's drawing and its handles use.
+/// Pyramid from the eye through the window, from which the camera's drawing and handles are
+/// computed.
 struct Frustum {
     own: Projection,
     /// Distance from the eye to the window.
     d: f64,
     /// Half the window's width and height at depth 1.
     slope: DVec2,
-    /// Drawn length of the up vector.
+    /// Length with which the up vector is drawn.
     up: f64,
-    /// Length of a line without an end.
+    /// Length with which an infinite line is drawn.
     endless: f64,
 }
 
@@ -91,8 +95,9 @@ impl Frustum {
         }
     }
 
-    /// Returns the direction of a point of the view plane at depth 1. `across` counts from the
-    /// view axis to the right and to the top, in halves of the window.
+    /// Returns the vector from the eye to a point of the plane at depth 1. `across` is the position
+    /// of the point, from the view axis to the right and to the top, in halves of the window's
+    /// width and height.
     fn towards(&self, across: DVec2) -> DVec3 {
         let DVec2 { x, y } = across * self.slope;
         self.own.ahead + self.own.right * x + self.own.top * y
@@ -117,8 +122,9 @@ const CORNERS: [DVec2; 4] = [
     DVec2::new(-1.0, 1.0),
 ];
 
-/// Where the handles of the near and the far plane are: in the middle of the plane's lower edge. On
-/// the view axis, they would cover the handles of the eye and the window.
+/// Position of the handles of the near and the far plane: the middle of the plane's lower edge, in
+/// halves of the window's width and height. On the view axis, these handles would cover those of
+/// the eye and the window.
 const LOWER: DVec2 = DVec2::new(0.0, -1.0);
 
 /// Name of the handle in the middle of the window.
@@ -247,8 +253,9 @@ pub fn moved_camera(
     let frustum = Frustum::new(camera, image);
     let Frustum { own, slope, .. } = frustum;
     let (eye, mut moved) = (camera.eye, *camera);
-    // Returns how far from `from` the handle is after it was moved along the line `towards`, as a
-    // multiple of the length of `towards`.
+    // Moves the handle parallel to `towards` to where it appears nearest to the pointer. Returns
+    // its signed distance from `from` in that direction, in lengths of `towards`. Fails if the
+    // handle then does not appear at the pointer.
     let along_line = |from: DVec3, towards: DVec3| {
         let (direction, length) = unit(towards);
         let (point, across) = on_line(at, direction, to, seen);

@@ -80,5 +80,5 @@ pub fn samples(sampler: &Sampler, world: &World, [x, y]: [u32; 2]) -> Result<Pix
 
 /// Returns the colour of the mean light of a pixel.
 pub fn color_of(mean: [f64; 3]) -> Color {
-    Color::from_bytes(Encoder::default().pixel(mean))
+    Color::from_bytes(Encoder::shared().pixel(mean))
 }

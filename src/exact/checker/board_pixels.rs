@@ -142,8 +142,8 @@ mod tests {
     }
 
     /// Returns the pixels that show only the board, each with the area of the first colour minus
-    /// that of the second. Omits pixels in which the squares at the corners could not be
-    /// determined.
+    /// that of the second. The difference is `None` if too many lines of the board cross the pixel.
+    /// Omits pixels in which the squares at the corners could not be determined.
     fn sums(world: &World) -> Vec<(BoardPixel, Option<BoundedSum>)> {
         let [width, height] = SIZE;
         let mut batches = BoardBatches::new();
@@ -178,7 +178,7 @@ mod tests {
         let known = sums(&world).into_iter().filter_map(|(_, sum)| sum);
         let sharp = known.filter(|sum| sum.bound < 1e-9).count();
         // More than half of the picture's 24 × 18 = 432 pixels are below the horizon and may show
-        // the board, so at least 100 sharp results are expected.
+        // the board, so at least 100 results with a small error bound are expected.
         assert!(sharp > 100, "{sharp}");
     }
 

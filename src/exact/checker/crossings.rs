@@ -17,10 +17,10 @@ use std::f64::consts::PI;
 use multiversion::multiversion;
 
 /// Maximum number of terms of the series ([`EdgeSeries`]) by which a checkerboard is integrated
-/// along an edge. The error bound includes the omitted terms. Squares up to a distance of 18 sides
-/// of a square (`NEAR_SQUARES`) from the line where the depth is 0 are integrated one by one,
-/// without the series. At greater distances, the bound of the omitted terms is proportional to
-/// 22!/2·(18π)⁻²⁰, about 5e-15.
+/// along an edge. The error bound includes the omitted terms. The series is used only where the
+/// distance from the line with the depth 0 is more than 18 squares (`NEAR_SQUARES`). The bound of
+/// the omitted terms is then proportional to 22!/2·(18π)⁻²⁰, about 5e-15. Fewer terms would make
+/// this factor larger.
 pub(super) const MAX_TERMS: usize = 20;
 /// Upper limit on the number of blocks into which the sum over an edge's crossings is divided. The
 /// truncation error of each block is limited to the tolerance divided by this number, so that the
@@ -95,8 +95,8 @@ impl EdgeSeries {
     }
 
     /// Returns the least number of terms of the series with which the truncation error of a sum
-    /// over `lines` crossings is at most `limit`, and a bound on this error. `depth` is the depth
-    /// of the nearest crossing.
+    /// over `lines` crossings is at most `limit`, and a bound on this error. `depth` is the
+    /// smallest depth of a crossing.
     fn terms_for(&self, depth: f64, lines: f64, limit: f64) -> (usize, f64) {
         let (mut terms, mut left) = (self.terms, 0.0);
         while terms > 1 {
@@ -132,9 +132,9 @@ impl LineCrossings {
     /// blocks. `series` gives X, the edge's contribution at a crossing. `tolerance` limits the
     /// truncation error.
     ///
-    /// Over each block, the depth grows by half, unless this takes fewer than [`MIN_BLOCK`] or more
-    /// than [`MAX_BLOCK`] crossings. Each block uses as few terms of the series as the tolerance
-    /// allows.
+    /// A block ends where the depth has grown by half, but it contains at least [`MIN_BLOCK`]
+    /// crossings (or all that are left) and at most [`MAX_BLOCK`]. Each block uses as few terms of
+    /// the series as the tolerance allows.
     pub(super) fn one_by_one(&self, series: &EdgeSeries, lines: f64, tolerance: f64) -> BoundedSum {
         let limit = tolerance / MAX_BLOCKS;
         let mut sum = BoundedSum::default();
@@ -152,9 +152,9 @@ impl LineCrossings {
             // t has an error of at most 2, plus 3 for each crossing since t was last computed in
             // double-double. The mean of this error over the block is at most 4·`reach`. The slope
             // of X is at most π times the bound `series.size` of X, so an error of t causes at most
-            // π times as large an error of X, relative to this bound. Second, a term of X has 14
-            // roundings of its own, derived in `green`. Third, each of the `LANES` running sums has
-            // one rounding for each number added.
+            // π times as large an error of X, relative to this bound. Second, a term of X is
+            // computed with 14 roundings, derived in `green`. Third, each number added to one of
+            // the `LANES` running sums adds one rounding.
             let reach = 2.0 + 0.5 * count.min(CHUNK as f64);
             let added = count / LANES as f64 + 4.0;
             let rounding = UNIT * series.size(1, depth) * (added + 16.0 + 4.0 * PI * reach);

@@ -17,7 +17,7 @@
 //!
 //! P = Σ_j (−1)^j·A_j+1(a)·∂_a^j J, j < n,
 //!
-//! satisfies ∂_a P = s(a)·J up to ±A_n(a)·∂_a^n J. By Green's theorem,
+//! satisfies ∂_a P = s(a)·J, except for the truncation error ±A_n(a)·∂_a^n J. By Green's theorem,
 //!
 //! ∬ s(a)·s(b)·J da db = ∮ s(b)·P db.
 //!
@@ -25,18 +25,18 @@
 //!
 //! Ψ = ΣΣ (−1)^(j+k)·A_j+1(a)·A_k+1(b)·∂_a^j ∂_b^k J, j + k < n.
 //!
-//! Then dΨ = s(a)·Q da + s(b)·P db up to terms of order n.
+//! Then dΨ = s(a)·Q da + s(b)·P db, except for terms of order n.
 //!
 //! Let m grow by γ per unit of b along an edge. There, the series
 //!
 //! X = −K·Σ_k (k+1)!/2·S_k·A_k+1(b)·m^(−2−k), k = 1 … n,
 //!
-//! with S_1 = 1 and S_k+1 = γ·S_k + (∂m/∂b)^k, satisfies dX/db = −Q up to order n. With ρ = da/db,
-//! and with ΔΨ the difference of Ψ between the ends of the edge, it follows that
+//! with S_1 = 1 and S_k+1 = γ·S_k + (∂m/∂b)^k, satisfies dX/db = −Q, except for terms of order n.
+//! With ρ = da/db, and with ΔΨ the difference of Ψ between the ends of the edge, it follows that
 //!
 //! ∫ s(b)·P db = ΔΨ − ∫ s(a)·Q da = ΔΨ + ρ·∫ s(a) dX.
 //!
-//! With the roles of a and b exchanged, and X′ the series in a, it is also
+//! If a and b exchange their roles, and X′ is the series in a, the same integral is
 //!
 //! ∫ s(b)·P db = −(db/da)·∫ s(b) dX′.
 //!
@@ -44,7 +44,7 @@
 //! the sum of X times the jump of s(a) at each line that the edge crosses. The number of
 //! evaluations of X is about the number of crossed lines on which a is a whole number. With X′, it
 //! is about the number of crossed lines on which b is a whole number. Of the two formulas, the one
-//! with fewer lines is used.
+//! with fewer evaluations is used.
 
 use super::super::{budget::PixelBudget, clip::measure};
 use super::crossings::{EdgeSeries, LineCrossings, MAX_TERMS};
@@ -148,9 +148,10 @@ pub(super) fn sum(
         if ends != 0.0 && corners[i].depth.is_finite() {
             let (psi, size) = potential(board, &corners[i], terms);
             sum.value += ends * psi;
-            // Term k of the potential Ψ has at most 3k + 4 roundings and is less than 2^−k times
-            // term 0. The rounding error is therefore at most Σ (3k + 4)/2^k = 14 unit roundoffs,
-            // relative to term 0. The product with the density factor K has two more roundings.
+            // Term k of the potential Ψ is computed with at most 3k + 4 roundings and is less than
+            // 2^−k times term 0. The rounding error is therefore at most Σ (3k + 4)/2^k = 14 unit
+            // roundoffs, relative to term 0. The product with the density factor K adds two
+            // roundings.
             sum.bound += (16.0 * UNIT + 2.0 * board.density_error) * size;
         }
     }
@@ -330,7 +331,7 @@ impl Edge {
         } else {
             far.depth - near.depth
         };
-        // If no line is crossed, `lines` is 0. `stride` is not used then, so it is left at this 0.
+        // If no line is crossed, `lines` is 0. `stride` is then not used, and is set to 0, too.
         let mut stride = lines;
         if !lines.is_zero() {
             stride = along.over(&across);
@@ -354,8 +355,9 @@ impl Edge {
     }
 
     /// Computes the edge's contribution to the polygon's integral, except for the potentials at the
-    /// edge's ends. It consists of the values of the series ([`EdgeSeries`]) at the two ends, and
-    /// of its sum over the crossed lines. `tolerance` limits the truncation error of this sum.
+    /// edge's ends. The contribution consists of the values of the series ([`EdgeSeries`]) at the
+    /// two ends, and of a sum of its values at the crossed lines. `tolerance` limits the truncation
+    /// error of this sum.
     fn integral(
         &self,
         board: &Homography,
@@ -397,10 +399,10 @@ impl Edge {
             sum.value += 2.0 * start * jumps.value;
             sum.bound += 2.0 * jumps.bound;
         }
-        // Term k of the series X at an end of the edge has 3k + 4 roundings and is less than 2^−k
-        // times term 0. The roundings add up to at most 14 unit roundoffs, relative to term 0. The
-        // constant 32 covers both ends. Every term is also proportional to the density factor K,
-        // which has an error of its own.
+        // Term k of the series X at an end of the edge is computed with 3k + 4 roundings and is
+        // less than 2^−k times term 0. The roundings add up to at most 14 unit roundoffs, relative
+        // to term 0. The constant 32 covers both ends. Every term is also proportional to the
+        // density factor K, which has an error of its own.
         let (ends, all) = (32.0 * UNIT * ends, ends + sum.value.abs());
         sum.value *= self.rho;
         sum.bound = self.rho.abs() * (sum.bound + ends + 2.0 * board.density_error * all);

@@ -19,7 +19,9 @@ pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
 /// Absolute value of the determinant of the matrix of N_a, N_b and L ([`Homography`]) up to which
 /// the matrix is treated as singular. Each form is first scaled so that its largest coefficient is
 /// between 1 and 2. For a singular matrix, the computation continues with this value in place of
-/// the determinant, so that it stays finite, and the error bound covers the whole polygon.
+/// the determinant, so that it stays finite, and the error bound covers the whole polygon. Not
+/// critical: a determinant of products of about 1 has a rounding error of about 1e-31, so that a
+/// much smaller one has no correct digit.
 const MIN_DETERMINANT: f64 = 1e-100;
 
 /// Displacement of squares by rounding errors, in pixels, up to which corners may be moved onto the
@@ -172,8 +174,8 @@ impl Homography {
         // Squares may be of any size. N_a and N_b are therefore scaled like L, each by its own
         // power of two, before the matrix is inverted.
         let [(a, of_a), (b, of_b)] = across.map(normalized);
-        // The columns of det M·M⁻¹, where M is the matrix of the three forms. Each component is
-        // accurate to two roundings of its own value.
+        // The columns of the adjugate det M·M⁻¹, where M is the matrix of the three forms. Each
+        // component is accurate to two roundings of its own value.
         let columns = [cross(&b, &below), cross(&below, &a), cross(&a, &b)];
         let det = determinant(&a, &b, &below);
         let is_singular = det.abs() <= MIN_DETERMINANT;
@@ -195,8 +197,9 @@ impl Homography {
                 8.0 * unit * products / det.abs() + 4.0 * UNIT
             }
         };
-        // The value of N_a, N_b or L has three roundings of its largest terms, and the quotient N/L
-        // has one more. Each form is therefore given an error of four roundings.
+        // The value of a linear form is computed with three roundings relative to its largest
+        // terms, and the quotient of two forms with one more. Each form is therefore given an error
+        // of four roundings.
         let errors = [a, b, below].map(|form| 4.0 * UNIT * size(&form));
         let steepness = libm::hypot(below[0], below[1]);
         // Errors e of the forms displace a point by v = M⁻¹·e, where M is the matrix of the three
@@ -270,7 +273,8 @@ impl Homography {
     }
 
     /// Returns whether [`Self::corner`] treats the point `at` as lying on the horizon although it
-    /// lies below the horizon. It does so if the distance may be only a rounding error.
+    /// lies below the horizon. It does so if the point's distance from the horizon may be only a
+    /// rounding error.
     pub(super) fn is_set_on_horizon(&self, at: DVec2) -> bool {
         let level = form(&self.below, at);
         level > 0.0 && level <= self.horizon_tolerance
@@ -283,9 +287,10 @@ impl Homography {
     pub(in crate::exact) fn place(&self, axis: usize, at: DVec2, level: f64) -> (f64, f64) {
         let place = form(&self.across[axis], at) / level;
         let terms = size(&self.across[axis]) + place.abs() * size(&self.below);
-        // The factors of each form have three roundings, its value has four, and the quotient N/L
-        // has one, 8 in total. The error of N/L is proportional to 1/L. If L is as small as twice
-        // its own error, the true 1/L may be twice the computed one, so the total is doubled.
+        // The coordinate is N/L, a quotient of two forms. The factors of a form are computed with
+        // three roundings, its value with four, and the quotient with one: 8 in total. The error of
+        // N/L is proportional to 1/L. If L is as small as twice its own error, the true 1/L may be
+        // twice the computed one, so the total is doubled.
         (place, 16.0 * UNIT / level * terms)
     }
 

@@ -21,10 +21,10 @@ use super::{
 use crate::math::two_sum;
 
 /// Maximum number of corners that cutting may add to a polygon. Squares are cut off the polygon one
-/// after another, and each cut changes what is left. If the rest has more corners, cutting ends,
-/// and the rest's area is added to the error bound. Exact cuts add at most two corners, both on the
-/// line of the latest cut. Many more show that the lines are closer to each other than rounding
-/// errors, so that cutting is useless.
+/// after another, and each cut changes the remaining polygon. If this polygon has more corners,
+/// cutting ends, and the polygon's area is added to the error bound. Exact cuts add at most two
+/// corners, both on the line of the latest cut. Many more corners show that the lines are closer to
+/// each other than rounding errors, so that cutting is useless.
 const MAX_EXTRA_CORNERS: usize = 32;
 
 /// Maximum absolute value of a board coordinate, in squares, in a polygon that is cut into squares.
@@ -63,8 +63,8 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -
             }
             let (area, perimeter) = measure(&squares.piece);
             // The area is half a sum with a term for each corner. A term is the difference of two
-            // products of distances, each at most half the perimeter. It has three roundings, and
-            // adding it to the sum has one.
+            // products of distances, each at most half the perimeter. A term is computed with three
+            // roundings, and adding it to the sum is the fourth.
             let rounding = squares.piece.len() as f64 * UNIT * perimeter * perimeter;
             tally.add(
                 square_wave(row) * square_wave(square) * area.abs(),
@@ -129,9 +129,9 @@ impl Cutter {
             .map_or(f64::INFINITY, |(first, last)| (last - first + 1) as f64)
     }
 
-    /// Cuts the next strip, between the lines i and i + 1, off the rest. Moves the strip to
-    /// `piece`, adds the cut's error to `tally`, and returns i. Returns `None` if nothing is left
-    /// or the polygon cannot be cut.
+    /// Cuts the next strip, between the lines i and i + 1, off `rest`, the part of the polygon that
+    /// is not yet cut off. Moves the strip to `piece`, adds the cut's error to `tally`, and returns
+    /// i. Returns `None` if `rest` is empty or the polygon cannot be cut.
     fn next(&mut self, tally: &mut CompensatedSum) -> Option<f64> {
         let (i, last) = self.strips?;
         if self.rest.len() < 3 {
@@ -147,9 +147,9 @@ impl Cutter {
         Some(i as f64)
     }
 
-    /// Cuts the part before line `n` off the rest, moves it to `piece`, and adds the cut's error to
-    /// `tally`. If the rest then has too many corners, adds the rest's area to the error and drops
-    /// the rest.
+    /// Cuts `rest`, the part of the polygon that is not yet cut off, along line `n`. Moves the part
+    /// before the line to `piece`, and adds the cut's error to `tally`. If `rest` then has too many
+    /// corners, adds its area to the error and empties it.
     fn cut(&mut self, n: f64, tally: &mut CompensatedSum) {
         let line: [f64; 3] = std::array::from_fn(|k| self.across[k] - n * self.below[k]);
         self.piece.clear();
@@ -171,8 +171,8 @@ impl Cutter {
         let size = |k: usize| self.across[k].abs() + (n * self.below[k]).abs();
         // The cutting line's form has the maximum error `off`: three roundings in computing its
         // factors, and four in computing a value. Each rounding is relative to the sum of the
-        // absolute values of the form's terms. The chord's end points have four more roundings,
-        // which are added to the error below.
+        // absolute values of the form's terms. The chord's end points are computed with four more
+        // roundings, which are added to the error below.
         let off = 7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2));
         let step = (to - from).abs();
         tally.bound += (off / line[0].abs().max(line[1].abs()) + 4.0 * UNIT) * (step.x + step.y);
@@ -199,9 +199,9 @@ impl CompensatedSum {
     fn sum(&self) -> BoundedSum {
         BoundedSum {
             value: self.value + self.rest,
-            // The addition has an error of at most one unit roundoff, because the absolute value of
-            // the sum is at most 1. The errors of adding up `rest` are far below the second unit
-            // roundoff.
+            // Adding `rest`, the sum of all earlier rounding errors, has an error of at most one
+            // unit roundoff, because the absolute value of the result is at most 1. The errors in
+            // `rest` itself are far below the second unit roundoff.
             bound: self.bound + 2.0 * UNIT,
         }
     }

@@ -130,8 +130,8 @@ fn from_middle(t: f64) -> (f64, f64) {
     (middle - (shifted - ROUND), sign)
 }
 
-/// Returns the periodic Euler polynomials A_1(t) … A_TERMS+1(t), each at its own index; the entry
-/// at 0 is meaningless.
+/// Returns the periodic Euler polynomials A_1(t) … A_TERMS+1(t), where A_k(t) has the index k. The
+/// entry at 0 is meaningless.
 ///
 /// A_0 is the square wave, A_k+1′ = A_k and A_k(t + 1) = −A_k(t). On a square, with η = t −
 /// floor(t) − ½,
@@ -184,11 +184,6 @@ pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS
     all
 }
 
-/// Lowest and highest order s of the exponential integrals F_s ([`integrals`]). No other orders are
-/// needed, because the sums over an edge's crossings contain the depth only to the powers −3, −4
-/// and −5.
-const ORDERS_OF_INTEGRALS: [u32; 2] = [3, 5];
-
 /// Value of |y| below which the exponential integral F_3(y) ([`integrals`]) is computed by the
 /// power series. No term of the series exceeds 3 for such y, so that few digits cancel.
 const SMALL: f64 = 3.0;
@@ -211,8 +206,9 @@ static EXPANSIONS: LazyLock<Vec<Expansion>> = LazyLock::new(expansions);
 /// v)^(−s) dv.
 ///
 /// Their recurrence is s·F_(s+1) = 1 + iy·F_s (DLMF 8.19.12). A step from F_s to F_(s+1) multiplies
-/// an error by y/s; the opposite step divides it by y/s. For |y| below [`LARGE`], the two steps
-/// from F_3 multiply an error by at most y²/12, about 340. For larger |y|, the steps start at F_5.
+/// an error by y/s; the opposite step divides it by y/s. For |y| below [`LARGE`], F_4 and F_5
+/// follow from F_3 by two steps, which multiply an error by at most y²/12, about 340. For larger
+/// |y|, F_4 and F_3 follow from F_5.
 pub(super) fn integrals(y: f64) -> [Complex; 3] {
     let size = y.abs();
     let integrals = if size < LARGE {
@@ -220,7 +216,7 @@ pub(super) fn integrals(y: f64) -> [Complex; 3] {
         let fourth = next(size, third, 3.0);
         [third, fourth, next(size, fourth, 4.0)]
     } else {
-        let fifth = asymptotic(size, ORDERS_OF_INTEGRALS[1]);
+        let fifth = asymptotic(size, 5);
         let fourth = previous(size, fifth, 4.0);
         [previous(size, fourth, 3.0), fourth, fifth]
     };
@@ -249,8 +245,8 @@ fn previous(y: f64, integral: Complex, order: f64) -> Complex {
     [order * integral[1] / y, (1.0 - order * integral[0]) / y]
 }
 
-/// Evaluates the asymptotic series of the exponential integral F_s(y) for y ≥ `LARGE` until the
-/// terms are negligible (DLMF 8.20.2, with z = −iy). `order` is s.
+/// Computes the exponential integral F_s(y) for y ≥ `LARGE`, where s is `order`. Adds up the
+/// following asymptotic series until its terms are negligible (DLMF 8.20.2, with z = −iy):
 ///
 /// (1/z)·Σ (−1)^k·(s)_k·z^−k, where (s)_k = s·(s + 1)·…·(s + k − 1).
 fn asymptotic(y: f64, order: u32) -> Complex {
@@ -301,21 +297,20 @@ fn expansions() -> Vec<Expansion> {
     //
     // Errors satisfy this equation without the −1, so that they are proportional to y^(s−1),
     // whereas F_s grows about like 1/y. They therefore decay on the way down. The coefficients c_k
-    // about y satisfy the recurrence
+    // of the Taylor series about y satisfy the recurrence
     //
     // (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1 − δ_k,
     //
     // where δ_k is 1 if k = 0, and 0 otherwise.
     let middles = (SMALL / STEP) as u32..=(LARGE / STEP) as u32;
-    let order = ORDERS_OF_INTEGRALS[0];
-    let mut value = asymptotic(LARGE, order);
+    let mut value = asymptotic(LARGE, 3);
     let about = |middle: u32| {
         let y = f64::from(middle) * STEP;
         let mut terms = [[0.0; 2]; EXPANSION_TERMS];
         terms[0] = value;
         for k in 1..EXPANSION_TERMS {
             let done = (k - 1) as f64;
-            let mut term = times([f64::from(order) - 1.0 - done, -y], terms[k - 1]);
+            let mut term = times([2.0 - done, -y], terms[k - 1]);
             match k.checked_sub(2) {
                 Some(before) => {
                     let [re, im] = terms[before];
@@ -358,7 +353,7 @@ fn first(y: f64) -> Complex {
     let mut term = [1.0, 0.0];
     for k in 1..40 {
         let k = f64::from(k);
-        // The factor from term to term is −z/k = iy/k.
+        // Each term is the previous one times −z/k = iy/k.
         term = [-term[1] * y / k, term[0] * y / k];
         first = [first[0] - term[0] / k, first[1] - term[1] / k];
         if size(term) < VANISHING {
@@ -408,7 +403,7 @@ mod tests {
 
     /// Compares the integrals for large |y| with the first two terms of the asymptotic series of
     /// their real and of their imaginary parts. The third term is at most 6·7·8·9·y⁻⁴ times the
-    /// first, about 3.02e-13 at y = 10⁴. The tolerance is this plus a few roundings.
+    /// first, about 3.02e-13 at y = 10⁴. The tolerance is this ratio plus a few roundings.
     #[test]
     fn integrals_of_large_arguments_have_all_their_digits() {
         for y in [1e4, -1e4, 3e7, 5e10, -1e15] {

@@ -189,9 +189,9 @@ impl BoardLanes {
         }
         // Rounding errors: for every line, the part of a side beyond the line is computed by eight
         // operations from the side's length and a distance of at most √2. A strip has five sides,
-        // of which four lie on sides of the pixel. Adding a side has one rounding, and adding a
-        // line's sum has two. The rounding of points may also displace each cutting line, and the
-        // lines on either side, by four unit roundoffs.
+        // of which four lie on sides of the pixel. Adding a side causes one rounding, and adding
+        // the sum for a line causes two. The rounding of points may also displace each cutting
+        // line, and the lines on either side, by four unit roundoffs.
         //
         // A displaced line sweeps at most √2, the pixel's diagonal, times its displacement. The
         // sign changes there, which doubles the error. So displacements are multiplied by 3, which
@@ -311,12 +311,12 @@ impl BoardLanes {
             let Some(chord) = chords.get_mut(strip) else {
                 break;
             };
-            // The chord is stored from the point where the pixel's boundary enters the strips
-            // before the line to the point where it leaves these strips. The chord is a side of two
-            // strips. In the outline of the strip after the line, it has the stored direction; in
-            // that of the strip before the line, the opposite one. The two strips have opposite
-            // signs, so that the chord's total weight is −2 times the sign of the strip before the
-            // line.
+            // The chord is stored with a direction: from the point where the pixel's boundary
+            // enters the strips before the line, to the point where the boundary leaves these
+            // strips. The chord is a side of two strips. In the outline of the strip after the
+            // line, the chord has the stored direction. In the outline of the strip before the
+            // line, it has the opposite direction. The two strips have opposite signs, so that the
+            // chord's total weight is −2 times the sign of the strip before the line.
             let [up, down] = ends;
             for i in 0..PIXELS {
                 let is_one = (crossings[0][i] == 1.0) & (crossings[1][i] == 1.0);

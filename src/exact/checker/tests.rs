@@ -1,5 +1,5 @@
 //! Compares the board's integral over a polygon with an independent sum over squares, and with the
-//! sum of the integrals over parts of the polygon, also at the horizon.
+//! sum of the integrals over parts of the polygon. Some of the polygons reach the horizon.
 
 mod bounds;
 
@@ -100,9 +100,8 @@ fn area(polygon: &[DVec2]) -> f64 {
         .sum::<f64>()
 }
 
-/// Returns the integral over a polygon of the sign of the board with the linear forms `forms`,
-/// square by square. Projects the corners of each square to the picture and clips the square to the
-/// polygon.
+/// Integrates the sign of the board with the linear forms `forms` over a polygon, square by square.
+/// Projects the corners of each square to the picture and clips the square to the polygon.
 fn brute(forms: [[f64; 3]; 3], polygon: &[DVec2]) -> f64 {
     let m = DMat3::from_cols_array_2d(&forms).transpose();
     let inverse = m.inverse();
@@ -229,8 +228,9 @@ fn wide_views() {
     }
 }
 
-/// If squares are very small, an edge crosses a million lines. For boards seen from above, also
-/// tilted, the integral is compared with the sum over parts whose edges cross fewer lines.
+/// If squares are very small, an edge crosses a million lines. The boards are seen from above,
+/// straight down or tilted. The integral over the pixel is compared with the sum over parts whose
+/// edges cross fewer lines.
 #[test]
 fn a_million_lines() {
     for (turn, tilt) in [
@@ -284,8 +284,9 @@ fn the_horizon() {
             // A colour's share is half of the integral of signs plus a half, so that the integral's
             // bound may be twice that of a mean.
             assert!(found.bound < 1.8e-9, "{view:?}: {found:?}");
-            // The pixel's vertical slices are computed in a different way: their edges cross other
-            // lines, and their crossings are counted from other points. The sum must be the same.
+            // Five vertical slices make up the pixel. Their edges cross the lines of the board at
+            // other points than the pixel's edges do, so their integrals are sums of other terms.
+            // Within the error bounds, their total must be the integral over the whole pixel.
             let mut slices = BoundedSum::default();
             for i in 0..5 {
                 let [low, high] = [i, i + 1].map(|i| f64::from(i) / 5.0 - 0.5);
@@ -330,9 +331,10 @@ fn the_end_is_the_limit() {
 /// the line. Returns the integral, and the area of the part of the polygon that shows greater
 /// distances.
 fn brute_limit(view: &PixelView, polygon: &[DVec2], most: f64) -> (f64, f64) {
-    // The distance is q = height·x/y at the point (x, y) relative to the middle of the horizon. The
-    // board's coordinates are linear in q. The polygon is cut at each q at which a coordinate is an
-    // integer.
+    // The point (x, y) of the picture, relative to the middle of the horizon, shows the point of
+    // the line at the distance q = height·x/y from the foot. The board's two coordinates are linear
+    // in q. The polygon is cut at each q at which one of them is an integer, because the colour of
+    // the board changes there.
     let angle = view.degrees.to_radians();
     let factors = [-libm::sin(angle), libm::cos(angle)];
     let q = |p: DVec2| view.height * (p.x + view.place.x) / (p.y + view.place.y);
@@ -402,7 +404,7 @@ fn the_widest_views() {
 }
 
 proptest! {
-    // Each case takes 20 ms, so that only a quarter of the usual number of cases is run.
+    // Each case takes 20 ms, so only a quarter of the usual number of cases is run.
     #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases / 4, ..ProptestConfig::default() })]
 
     #[test]

@@ -159,8 +159,8 @@ pub struct Behaviour {
     pub board_normal: usize,
     /// How the colour of a surface is shaded.
     pub shading: Shading,
-    /// Fault in how rays are intersected with an object, and before it the object's index. `None`
-    /// is correct.
+    /// Index of an object whose intersections with rays are computed wrongly, and the fault in this
+    /// computation. `None` is correct.
     pub hit: Option<(usize, HitFault)>,
 }
 

@@ -59,12 +59,12 @@ impl PartialEq for MistakeRow {
 /// Where in a picture a mistake is visible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shows {
-    /// Inside areas of one colour.
+    /// The mistake is visible inside areas of one colour.
     InAreas,
-    /// Only at edges, where colours meet.
+    /// The mistake is visible only at edges, where colours meet.
     AtEdges,
-    /// Both inside areas of one colour and at edges, but weakly. The search for mistakes at edges
-    /// tries such a mistake only if areas of one colour, too, differ from the prediction.
+    /// The mistake is visible both inside areas of one colour and at edges, but weakly. The search
+    /// for mistakes at edges tries it only if areas of one colour, too, differ from the prediction.
     Everywhere,
 }
 
@@ -171,8 +171,8 @@ impl Candidate {
     }
 
     /// Returns a copy of the hypothesis with one more mistake. Returns `None` if the mistake is
-    /// impossible in the scene. Also returns `None` if the mistake is a row of the table of
-    /// mistakes, or an exchange of colours, and changes nothing.
+    /// impossible in the scene. A row of the table of mistakes and an exchange of colours may
+    /// change nothing; in this case, also returns `None`.
     pub fn with(&self, mistake: Mistake) -> Option<Self> {
         let mut candidate = self.clone();
         match &mistake {

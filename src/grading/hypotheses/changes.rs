@@ -114,15 +114,16 @@ pub fn set_hit_fault(c: &mut Candidate, object: usize, hit: HitFault) {
     }
 }
 
-/// Sets the curve by which light is encoded, unless it is wrong already.
+/// Gives the faulty program a wrong curve by which light is encoded, unless an earlier mistake has
+/// given it one.
 pub fn set_encoding(c: &mut Candidate, curve: Curve) {
     if c.curve == Curve::Correct {
         c.curve = curve;
     }
 }
 
-/// Sets one wrong curve both for decoding colours and for encoding their average, unless the
-/// encoding is wrong already.
+/// Gives the faulty program one wrong curve both for decoding colours and for encoding their
+/// average, unless an earlier mistake has given it a wrong encoding.
 pub fn set_averaging(c: &mut Candidate, curve: Curve) {
     if c.curve == Curve::Correct {
         (c.decoding, c.curve) = (curve, curve);
@@ -135,7 +136,8 @@ pub fn set_order(c: &mut Candidate, visible: SeenSurface) {
     }
 }
 
-/// Sets the rule that says which surface is seen, unless the rule is wrong already.
+/// Gives the faulty program a wrong rule for which surface is seen, unless an earlier mistake has
+/// given it one.
 pub fn set_seen_surface(c: &mut Candidate, visible: SeenSurface) {
     if c.behaviour.visible == SeenSurface::Nearest {
         c.behaviour.visible = visible;

@@ -23,7 +23,7 @@ pub enum Curve {
     Missing,
     /// The sRGB curve, applied twice.
     Twice,
-    /// The power 1/2.2.
+    /// The power function with the exponent 1/2.2.
     Power22,
     /// The square root.
     Root,

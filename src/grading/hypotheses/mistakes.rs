@@ -66,9 +66,9 @@ const fn row(
     }
 }
 
-/// Expands to a row of the table of mistakes. Used for rows that differ only in a part of the
-/// message and in a number or function. The first word of the arguments names the kind of row. The
-/// other arguments are the parts that differ.
+/// Expands to one row of the table of mistakes. Used for families of rows that differ only in a
+/// part of the message and in a number or function. The first argument names the family. The other
+/// arguments are the parts that differ.
 #[rustfmt::skip]
 macro_rules! family {
     (window $window:literal, $aspect:expr) => { row("aspect", InAreas, concat!("the picture is stretched: its window is ", $window, ", though the picture is not"), WINDOW, |c, _| set_aspect(c, $aspect)) };

@@ -156,8 +156,9 @@ impl Parameter {
         Self { owner, fields }
     }
 
-    /// Returns a description of what the fields belong to, for messages. If it is an object whose
-    /// block in the file describes several objects, the description mentions the others.
+    /// Returns the name of the object, or other part of the scene, to which the fields belong. If
+    /// the object's block in the file describes several objects, mentions the others, too. The name
+    /// is used in messages.
     pub fn owner_name(&self, scene: &Scene) -> String {
         let name = self.owner.name(scene);
         if self.owner.others(scene).is_empty() {
@@ -174,7 +175,8 @@ impl Parameter {
         fields.filter_map(|field| part.value(field)).collect()
     }
 
-    /// Returns the value of the parameter's first field.
+    /// Returns the value of the parameter's first field. Returns `None` if the scene does not have
+    /// this field.
     pub fn value(&self, scene: &Scene) -> Option<Value> {
         self.values(scene).into_iter().next()
     }

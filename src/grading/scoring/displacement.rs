@@ -12,15 +12,16 @@ use glam::DVec3;
 
 use super::{linear_system::solve, prediction::Prediction};
 
-/// Greatest squared length of a fitted displacement that counts as chance, in squared standard
-/// deviations. A χ² variable with six degrees of freedom exceeds 50 with a probability below 10⁻⁸.
+/// Greatest squared length of a fitted displacement that may be chance, in squared standard
+/// deviations. The displacement has six coefficients. A χ² variable with six degrees of freedom
+/// exceeds 50 with a probability below 10⁻⁸.
 const CHANCE: f64 = 50.0;
 
-/// Maximum displacement of edges, in pixels, that is attributed to the choice of samples if there
-/// is one sample per pixel. For n samples per pixel, it is divided by n. If all pixels use the same
-/// sample positions, the mean of these may differ from the pixel's middle: in a Hammersley set, by
-/// 1/(2n). The value is greater than 1/2, because n is estimated from noise, and the estimate is
-/// too large if all pixels use the same positions.
+/// Maximum displacement of edges, in pixels, that is attributed to the choice of samples if each
+/// pixel has one sample. For n samples per pixel, it is divided by n. A correct program may use the
+/// same sample positions in all pixels. The mean of these positions may then differ from the
+/// pixel's middle, by 1/(2n) for a Hammersley set. The value is greater than 1/2 because n is
+/// estimated from noise, and the estimate is too large for such a program.
 const OFF_MIDDLE: f64 = 0.75;
 /// Maximum displacement of edges, in pixels, that is attributed to the choice of samples, however
 /// few samples there are. With a larger limit, mistakes in pictures with few samples would be
@@ -35,14 +36,15 @@ const TERMS: usize = 6;
 /// chance. Chosen by trial.
 const SURE: f64 = 8.0;
 
-/// Greatest squared width of a pixel, in squared pixels, that counts as correct in a picture
+/// Greatest squared width of a pixel, in squared pixels, that is treated as correct in a picture
 /// without noise. The correct value is 1. With a smaller margin, errors of the estimate would be
 /// reported; with a larger one, slight blurs would be overlooked.
 const WIDE: f64 = 1.4;
 /// Amount, in squared pixels, that is added to [`WIDE`] if each pixel has one sample. For n samples
 /// per pixel, it is divided by n. If all pixels use the same few sample positions, these may lie
 /// farther from the pixel's middle than its points do on average. A correct picture is then less
-/// sharp.
+/// sharp. With a smaller amount, such pictures would be reported as blurred; with a larger one,
+/// blurred pictures with few samples would be overlooked.
 const WIDER: f64 = 3.0;
 /// Amount, in squared pixels, by which the squared width of a pixel may be below the correct value,
 /// 1, in a picture without noise. With a larger amount, pixels that are slightly too narrow would
@@ -51,12 +53,13 @@ const NARROW: f64 = 0.25;
 /// Amount, in squared pixels, that is added to [`NARROW`] if each pixel has one sample. For n
 /// samples per pixel, it is divided by n. If all pixels use the same few sample positions, these
 /// may lie closer to the pixel's middle than its points do on average. A correct picture is then
-/// sharper.
+/// sharper. With a smaller amount, such pictures would be reported as wrong; with a larger one,
+/// narrow pixels in pictures with few samples would be overlooked.
 const NARROWER: f64 = 5.0;
 
-/// Greatest squared width of a pixel, in squared pixels, that counts as correct in a JPEG, whose
-/// coding makes edges less sharp. It was measured: 80 correct JPEGs with qualities from 75 to 100
-/// have at most 4.7, and a picture whose pixels are three times too wide has 7.
+/// Greatest squared width of a pixel, in squared pixels, that is treated as correct in a JPEG,
+/// whose coding makes edges less sharp. It was measured: 80 correct JPEGs with qualities from 75 to
+/// 100 have at most 4.7, and a picture whose pixels are three times too wide has 7.
 const WIDE_IN_CODED: f64 = 5.5;
 
 /// Least pixel width that is reported, in pixels. A smaller estimate, which may be 0, is raised to
@@ -104,10 +107,11 @@ impl NormalEquations {
         }
     }
 
-    /// Solves for the displacement. Its constant part is reduced by up to `off_middle` pixels in
-    /// each direction, because a small number of samples per pixel may seem to displace edges by
-    /// this distance. `noise` is the real variance of the errors divided by the assumed one.
-    /// Returns `None` if the displacement may be chance.
+    /// Solves for the displacement, which is an affine function of the place in the picture.
+    /// Returns `None` if it may be chance. A small number of samples per pixel may seem to displace
+    /// all edges by up to `off_middle` pixels in each direction. So the constant coefficients are
+    /// reduced by this distance before the length of the displacement is computed. `noise` is the
+    /// real variance of the errors divided by the assumed one.
     fn displacement(&self, off_middle: f64, noise: f64) -> Option<Displacement> {
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
         let full = |matrix: &Symmetric| -> Vec<Vec<f64>> {
@@ -141,12 +145,12 @@ impl Prediction<'_> {
     /// most of these pixels are exact, there is no noise, so large errors in the others have
     /// another cause.
     pub fn is_noise_everywhere(&self) -> bool {
-        /// Greatest squared error of a pixel that counts as exact, relative to the variance of one
-        /// sample. It is the mean squared error with 10 000 samples per pixel.
+        /// Greatest squared error of an exact pixel, relative to the variance of one sample. It is
+        /// the mean squared error with 10 000 samples per pixel.
         const EXACT: f64 = 1e-4;
-        /// Squared error, relative to the variance of one sample, above which a pixel counts as
-        /// wrong if most pixels are exact. It is the mean squared error with two samples per pixel,
-        /// which cannot occur among exact pixels.
+        /// Squared error, relative to the variance of one sample, above which a pixel is wrong if
+        /// most pixels are exact. It is the mean squared error with two samples per pixel. In an
+        /// exact pixel, the error is far smaller.
         const OTHER: f64 = 0.5;
         /// Least number of wrong pixels that cannot be chance if most pixels are exact. With a
         /// smaller number, a few odd pixels would make a picture wrong.
@@ -164,7 +168,7 @@ impl Prediction<'_> {
         };
         let mut shares: Vec<f64> = (0..self.observed.len()).filter_map(share).collect();
         shares.sort_by(f64::total_cmp);
-        // The picture counts as exact if three quarters of the tested pixels are exact.
+        // The picture is treated as exact if three quarters of the tested pixels are exact.
         let is_exact = shares
             .get(shares.len() * 3 / 4)
             .is_some_and(|most| *most < EXACT);
@@ -184,9 +188,10 @@ impl Prediction<'_> {
         f64::min(squares / f64::max(variances, 1e-12), 1.0)
     }
 
-    /// Estimates the width of the pixel filter, in pixels. Returns `None` if it may be 1. `share`
-    /// is the variance of a pixel's error relative to that of one sample: 1/n for n samples per
-    /// pixel.
+    /// Estimates the width of the pixel filter, in pixels. Returns `None` if it may be 1.
+    /// `deviations` contains the standard deviations of the pixels' channels for one sample per
+    /// pixel. `share` is the variance of a pixel's error relative to that of one sample: 1/n for n
+    /// samples per pixel. `is_coded` says that the picture is a JPEG.
     ///
     /// To second order, the mean over a square of the width w differs from the mean over a pixel by
     /// (w² − 1)/24 times the Laplacian of the picture.
@@ -277,8 +282,8 @@ impl Prediction<'_> {
                 expected += weight * error[i];
             }
         }
-        // The predicted errors of a JPEG's coding are too large. So they are scaled down, by the
-        // ratio of observed to expected errors in the whole picture.
+        // The errors that are predicted for a JPEG's coding may be too large in the whole picture.
+        // If so, they are scaled down, by the ratio of the observed to the expected errors.
         let noise = if is_coded {
             f64::min(observed / f64::max(expected, 1e-300), 1.0)
         } else {

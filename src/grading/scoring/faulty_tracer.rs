@@ -25,7 +25,7 @@ const FAR: f64 = 1e9;
 /// smaller stride tests more samples, which takes longer; a larger one misses more small details.
 const EACH: usize = 4;
 
-/// Places near the corners of a cell, in units of its side. A cell counts as having one colour if
+/// Places near the corners of a cell, in units of its side. A cell is assumed to have one colour if
 /// these places and every fourth sample (`EACH`) show one colour. In most directions, an edge that
 /// misses all of them cuts off less than 0.5 % of the cell. An edge parallel to a side may cut off
 /// 4 %.
@@ -39,7 +39,7 @@ const CORNERS: [DVec2; 4] = [
 /// An object, prepared for tracing.
 struct Traced {
     shape: Shape,
-    /// Fault in how rays are intersected with the object.
+    /// Fault in how rays are intersected with the object; `None` if there is no fault.
     hit: Option<HitFault>,
     /// Bounding rectangle in the picture, in pixels. No ray outside of it hits the object.
     bounds: [DVec2; 2],
@@ -47,10 +47,36 @@ struct Traced {
     colors: [DVec3; 3],
 }
 
+/// A ray through a place of the picture, and what it hits.
+pub struct Ray<'a> {
+    place: DVec2,
+    eye: DVec3,
+    direction: DVec3,
+    /// Depth or distance per unit of the ray's parameter t, whichever is compared with the near and
+    /// far planes.
+    length: f64,
+    /// Object that the ray sees, and the ray's parameter t where it hits the object; `None` for the
+    /// background.
+    hit: Option<(&'a Traced, f64)>,
+    /// Sort key of `hit`. The hit with the least key is seen.
+    order: f64,
+}
+
+impl Ray<'_> {
+    /// Returns the point with the parameter t.
+    fn at(&self, t: f64) -> DVec3 {
+        self.eye + t * self.direction
+    }
+}
+
 /// A scene, prepared for tracing.
 pub struct FaultyTracer {
     projection: Projection,
     behaviour: Behaviour,
+    /// Distance of the samples of neighbouring pixels along x and y, in pixels of the scene.
+    spacing: DVec2,
+    /// Place of the scene's picture that the top left corner of the program's picture shows.
+    offset: DVec2,
     near: f64,
     far: f64,
     objects: Vec<Traced>,
@@ -97,9 +123,19 @@ impl FaultyTracer {
                 colors: shape.colors().map(decoding),
             }
         });
+        let mut spacing = DVec2::from(behaviour.spread);
+        let mut offset = DVec2::from(behaviour.offset);
+        if behaviour.aspect != 1.0 {
+            // The picture is stretched from the middle of its rows.
+            let middle = projection.size.x / 2.0;
+            spacing.x *= behaviour.aspect;
+            offset.x = middle + (offset.x - middle) * behaviour.aspect;
+        }
         Self {
             projection,
             behaviour,
+            spacing,
+            offset,
             near: scene.camera.near,
             far: scene.camera.far.unwrap_or(f64::INFINITY),
             objects: objects.collect(),
@@ -109,21 +145,20 @@ impl FaultyTracer {
 
     /// Takes samples in each pixel of a part of the picture, and returns their means and variances.
     pub fn moments(&self, part: Area, samples: usize) -> Moments {
-        // The faulty program may spread its samples over more or less than a pixel, so their
-        // distances from the pixel's middle are scaled.
-        let of_pixel = |place: DVec2| 0.5 + (place - 0.5) * self.behaviour.pixel;
-        let places: Vec<DVec2> = lattice(samples).into_iter().map(of_pixel).collect();
-        let corners = CORNERS.map(of_pixel);
-        let count = places.len() as f64;
+        let places = self.places(&lattice(samples));
+        let corners = self.places(&CORNERS);
+        let probes: Vec<DVec2> = places
+            .iter()
+            .copied()
+            .step_by(EACH)
+            .chain(corners)
+            .collect();
+        let mut rays = Vec::new();
         // Whether the cell that was computed last in each column shows one colour. Cells are
-        // computed row by row. So the entry of a cell's own column belongs to the cell above, and
-        // the entry of the column before to the cell on the left.
+        // computed row by row, from left to right. So the entry of a cell's column describes the
+        // cell above, and the entry of the column to the left describes the cell to the left.
         let mut is_flat = vec![false; part.width as usize];
         let pixel = |(x, y): (u32, u32)| {
-            let corner = DVec2::new(f64::from(x), f64::from(y));
-            // Differences from the first sample are summed, so that the mean of equal samples is
-            // exact and their variance is 0.
-            let first = self.color(corner + places[0]);
             let column = (x - part.x) as usize;
             let is_beside = is_flat[column] || column > 0 && is_flat[column - 1];
             // A cell is assumed to have one colour if all tested places show this colour, and the
@@ -131,82 +166,138 @@ impl FaultyTracer {
             // squares of a board may be half as large as a cell, and all tested places may then
             // show one colour by chance. With up to 8 samples, all of them are taken, because the
             // test would cost more.
-            let mut probes = corners.iter().chain(places.iter().step_by(EACH));
-            let is_first = |probe: &DVec2| self.color(corner + *probe) == first;
-            if is_beside && places.len() > 8 && probes.all(is_first) {
-                is_flat[column] = true;
-                return (first, DVec3::ZERO);
-            }
-            let (mut sum, mut squares) = (DVec3::ZERO, DVec3::ZERO);
-            for &place in &places[1..] {
-                let more = self.color(corner + place) - first;
-                (sum, squares) = (sum + more, squares + more * more);
-            }
-            let more = sum / count;
-            is_flat[column] = squares == DVec3::ZERO;
-            (
-                first + more,
-                (squares / count - more * more).max(DVec3::ZERO),
-            )
+            let moments = (is_beside && places.len() > 8)
+                .then(|| self.cell((x, y), &probes, &mut rays))
+                .filter(|probed| probed.1 == DVec3::ZERO)
+                .unwrap_or_else(|| self.cell((x, y), &places, &mut rays));
+            is_flat[column] = moments.1 == DVec3::ZERO;
+            moments
         };
         Moments::exact(part.iter().map(pixel))
     }
 
-    fn color(&self, place: DVec2) -> DVec3 {
-        let [spread, offset] = [self.behaviour.spread, self.behaviour.offset].map(DVec2::from);
-        let place = place * spread + offset;
-        let middle = self.projection.size.x / 2.0;
-        let x = match self.behaviour.aspect {
-            1.0 => place.x,
-            aspect => middle + (place.x - middle) * aspect,
-        };
-        let moved = DVec2::new(x, place.y);
-        self.color_at(moved).unwrap_or(self.background)
+    /// Returns places of a pixel where the program takes samples, given where it should. A faulty
+    /// program may spread its samples over more or less than a pixel, so their distances from the
+    /// pixel's middle are scaled.
+    pub fn places(&self, places: &[DVec2]) -> Vec<DVec2> {
+        let of_pixel = |place: &DVec2| 0.5 + (place - 0.5) * self.behaviour.pixel;
+        places.iter().map(of_pixel).collect()
     }
 
-    /// Returns the colour that is seen at a place of the picture. Returns `None` for the
-    /// background.
-    fn color_at(&self, place: DVec2) -> Option<DVec3> {
-        let (mut eye, mut ray) = (self.projection.eye, self.projection.ray(place));
-        if let Rays::Parallel(distance) = self.behaviour.rays {
-            let ahead = self.projection.ahead;
-            (eye, ray) = (eye + distance * (ray - ahead), ahead);
+    /// Returns the mean and the variance of samples at some places of a pixel. `rays` is a buffer.
+    pub fn cell<'a>(
+        &'a self,
+        (x, y): (u32, u32),
+        places: &[DVec2],
+        rays: &mut Vec<Ray<'a>>,
+    ) -> (DVec3, DVec3) {
+        let corner = DVec2::new(f64::from(x), f64::from(y));
+        rays.clear();
+        rays.extend(places.iter().map(|place| self.ray(corner + place)));
+        self.trace(rays);
+        // Differences from the first sample are summed, so that the mean of equal samples is
+        // exact and their variance is 0.
+        let first = self.color(&rays[0]);
+        let (mut sum, mut squares) = (DVec3::ZERO, DVec3::ZERO);
+        for ray in &rays[1..] {
+            let more = self.color(ray) - first;
+            (sum, squares) = (sum + more, squares + more * more);
         }
-        if self.behaviour.rays == Rays::Fisheye {
-            let across = ray - self.projection.ahead;
-            let angle = across.length();
-            let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-            ray = cos * self.projection.ahead + sin * across.normalize_or_zero();
+        let count = places.len() as f64;
+        let more = sum / count;
+        let variance = (squares / count - more * more).max(DVec3::ZERO);
+        (first + more, variance)
+    }
+
+    /// Returns the ray through a place of the picture.
+    fn ray(&self, place: DVec2) -> Ray<'_> {
+        let place = place * self.spacing + self.offset;
+        let (mut eye, mut ray) = (self.projection.eye, self.projection.ray(place));
+        let ahead = self.projection.ahead;
+        match self.behaviour.rays {
+            Rays::Parallel(distance) => (eye, ray) = (eye + distance * (ray - ahead), ahead),
+            Rays::Fisheye => {
+                let across = ray - ahead;
+                let angle = across.length();
+                let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+                ray = cos * ahead + sin * across.normalize_or_zero();
+            }
+            _ => {}
         }
         let length = match (self.behaviour.clips_distances, self.behaviour.rays) {
             (true, _) => ray.length(),
-            // Depth per unit of the ray's parameter t. The direction vectors of all other kinds of
-            // rays have the depth 1.
-            (false, Rays::UpAsTop | Rays::Fisheye) => ray.dot(self.projection.ahead),
+            // Depth per unit of the ray's parameter t. In these two projections, the direction
+            // vector may have any depth; in all others, it has the depth 1.
+            (false, Rays::UpAsTop | Rays::Fisheye) => ray.dot(ahead),
             (false, _) => 1.0,
         };
-        let mut best: Option<(&Traced, f64, f64)> = None;
+        Ray {
+            place,
+            eye,
+            direction: ray,
+            length,
+            hit: None,
+            order: f64::INFINITY,
+        }
+    }
+
+    /// Finds what the rays of a cell hit. All rays are intersected with one object before the next
+    /// object, which is faster than the other way round.
+    fn trace<'a>(&'a self, rays: &mut [Ray<'a>]) {
+        let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for ray in &*rays {
+            (least, most) = (least.min(ray.place), most.max(ray.place));
+        }
         for (at, object) in self.objects.iter().enumerate() {
-            let [least, most] = object.bounds;
-            if place.x < least.x || place.x > most.x || place.y < least.y || place.y > most.y {
+            let [low, high] = object.bounds;
+            if most.cmplt(low).any() || least.cmpgt(high).any() {
                 continue;
             }
-            let crossings = match (object.hit, &object.shape) {
-                (_, Shape::Sphere(sphere)) => self.on_sphere(sphere, eye, ray),
+            match (object.hit, &object.shape) {
+                (_, Shape::Sphere(sphere)) => {
+                    self.hit(rays, at, |ray| {
+                        self.on_sphere(sphere, ray.eye, ray.direction)
+                    });
+                }
                 (_, Shape::Checkerboard(board)) => {
                     let normal = self.behaviour.board_normal;
-                    let t = (board.y - eye[normal]) / ray[normal];
-                    let [x, z] = self.on_board(eye + t * ray);
-                    let is_on_it = x.abs().max(z.abs()) < self.behaviour.board_reach;
-                    is_on_it.then_some([t; 2])
+                    let reach = self.behaviour.board_reach;
+                    self.hit(rays, at, |ray| {
+                        let t = (board.y - ray.eye[normal]) / ray.direction[normal];
+                        let is_on_it = || {
+                            let [x, z] = self.on_board(ray.at(t));
+                            x.abs().max(z.abs()) < reach
+                        };
+                        (reach.is_infinite() || is_on_it()).then_some([t; 2])
+                    });
                 }
                 (Some(hit), Shape::Triangle(triangle)) => {
-                    on_plane(&vertices(&triangle.outline), hit, eye, ray)
+                    let vertices = vertices(&triangle.outline);
+                    self.hit(rays, at, |ray| {
+                        on_plane(&vertices, hit, ray.eye, ray.direction)
+                    });
                 }
-                _ => crossings(&object.shape, eye, ray, 0.0),
-            };
-            let first = |crossings| self.first(crossings, length);
-            let Some(t) = crossings.and_then(first) else {
+                (_, shape) => {
+                    self.hit(rays, at, |ray| {
+                        crossings(shape, ray.eye, ray.direction, 0.0)
+                    });
+                }
+            }
+        }
+    }
+
+    /// Intersects rays with the object at an index. Rays that see it before the objects that they
+    /// hit so far hit it now.
+    fn hit<'a>(
+        &'a self,
+        rays: &mut [Ray<'a>],
+        at: usize,
+        crossings: impl Fn(&Ray) -> Option<[f64; 2]>,
+    ) {
+        let object = &self.objects[at];
+        for ray in rays {
+            let first = |crossings| self.first(crossings, ray.length);
+            let Some(t) = crossings(ray).and_then(first) else {
                 continue;
             };
             let order = match self.behaviour.visible {
@@ -215,29 +306,35 @@ impl FaultyTracer {
                 SeenSurface::Farthest => -t,
                 _ => self.order(t),
             };
-            if best.is_none_or(|(_, _, least)| order < least) {
-                best = Some((object, t, order));
+            if order < ray.order {
+                (ray.hit, ray.order) = (Some((object, t)), order);
             }
         }
-        let (object, t, _) = best?;
-        let point = eye + t * ray;
+    }
+
+    /// Returns the colour that a ray sees.
+    fn color(&self, ray: &Ray) -> DVec3 {
+        let Some((object, t)) = ray.hit else {
+            return self.background;
+        };
         let color = match object.shape {
             Shape::Checkerboard(Checkerboard { square, .. }) => {
-                let [x, z] = self.on_board(point).map(|at| at / square);
+                let [x, z] = self.on_board(ray.at(t)).map(|at| at / square);
                 usize::from(!(self.behaviour.square_rule.0)(x, z))
             }
-            Shape::Box(ref cuboid) => face(cuboid, point),
+            Shape::Box(ref cuboid) => face(cuboid, ray.at(t)),
             Shape::Sphere(_) | Shape::Triangle(_) => 0,
         };
+        let normal = || self.normal(&object.shape, ray.at(t));
         let shade = match self.behaviour.shading {
-            Shading::None => return Some(object.colors[color]),
-            Shading::OfRay => self.normal(&object.shape, point).dot(ray.normalize()).abs(),
+            Shading::None => return object.colors[color],
+            Shading::OfRay => normal().dot(ray.direction.normalize()).abs(),
             Shading::To(light) => {
-                let normal = self.normal(&object.shape, point);
-                -normal.dot(ray).signum() * normal.dot(light)
+                let normal = normal();
+                -normal.dot(ray.direction).signum() * normal.dot(light)
             }
         };
-        Some(shade.max(0.0) * object.colors[color])
+        shade.max(0.0) * object.colors[color]
     }
 
     /// Returns a unit normal of a shape at a point of its surface. It may point to either side.
@@ -260,7 +357,8 @@ impl FaultyTracer {
     }
 
     /// Intersects a ray with a sphere by the formula of the faulty program. Returns the ray's
-    /// parameters t at both intersections, the lesser first.
+    /// parameters t at both intersections, the lesser first. Returns `None` if the formula gives no
+    /// intersection.
     fn on_sphere(&self, sphere: &Sphere, eye: DVec3, ray: DVec3) -> Option<[f64; 2]> {
         let roots = || crossings(&Shape::Sphere(*sphere), eye, ray, 0.0);
         match self.behaviour.spheres {
@@ -291,9 +389,8 @@ impl FaultyTracer {
     }
 
     /// Returns the ray's parameter t at the visible hit of one object, or `None` if no hit is
-    /// visible. `crossings` contains t at both hits, the lesser first. `length` is the increase of
-    /// depth per unit of t. If the near and far planes are compared with distances, it is the
-    /// increase of distance.
+    /// visible. `crossings` contains t at both hits, the lesser first. `length` is the depth or the
+    /// distance per unit of t, whichever the program compares with the near and far planes.
     fn first(&self, crossings: [f64; 2], length: f64) -> Option<f64> {
         let counting = crossings.map(|t| Some(t).filter(|t| self.counts(*t, length)));
         match counting {
@@ -311,7 +408,8 @@ fn face(Cuboid { min, max, .. }: &Cuboid, point: DVec3) -> usize {
 
 /// Intersects a ray with a sphere as a faulty program does. Its formula −b ± √(b² − c), the roots
 /// of t² + 2 b t + c = 0, is correct only for rays of length 1, but here the ray reaches to the
-/// view plane, which is `distance` from the eye.
+/// view plane, which is `distance` from the eye. Returns the ray's parameters t at both roots, the
+/// lesser first, or `None` if there is no real root.
 fn with_unit_rays(sphere: &Sphere, distance: f64, eye: DVec3, ray: DVec3) -> Option<[f64; 2]> {
     let from = eye - sphere.center;
     let b = from.dot(distance * ray);
@@ -321,8 +419,9 @@ fn with_unit_rays(sphere: &Sphere, distance: f64, eye: DVec3, ray: DVec3) -> Opt
         .then(|| [-1.0, 1.0].map(|sign| distance * (sign * discriminant.sqrt() - b)))
 }
 
-/// Intersects a ray with a triangle. The fault says which tests against the triangle's edges are
-/// missing.
+/// Intersects a ray with the plane of a triangle, without the tests against the triangle's edges
+/// that `hit` omits. Returns the ray's parameter t twice, or `None` if the program misses the
+/// triangle.
 fn on_plane([a, b, c]: &[DVec3; 3], hit: HitFault, eye: DVec3, ray: DVec3) -> Option<[f64; 2]> {
     let (one, other) = (b - a, c - a);
     let normal = one.cross(other);
@@ -362,7 +461,7 @@ pub fn bounds(shape: &Shape, projection: &Projection) -> Option<[DVec2; 2]> {
 /// Returns a Fibonacci lattice of at least `samples` points in the unit square. If the square is
 /// cut into as many rows, or columns, as there are points, each of them contains one point. So
 /// edges along rows and columns are sampled evenly.
-fn lattice(samples: usize) -> Vec<DVec2> {
+pub fn lattice(samples: usize) -> Vec<DVec2> {
     let (mut step, mut count) = (1, 1);
     while count < samples {
         (step, count) = (count, step + count);

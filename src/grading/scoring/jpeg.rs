@@ -7,8 +7,9 @@
 //! JPEG (ITU-T T.81) transforms each block of 8 × 8 values of luma or chroma into 64 coefficients,
 //! and rounds these to multiples of steps in a table. Rounding to a step s adds the variance s²/12.
 //! The transform preserves sums of squares, so the mean variance of a block's values is the mean
-//! variance of its coefficients. A block of one colour has a single coefficient. Chroma is assumed
-//! to have half the picture's resolution, as in most files, so its errors spread up to two pixels.
+//! variance of its coefficients. In a block of one colour, only the first coefficient differs from
+//! 0, so only this one is changed by rounding. Chroma is assumed to have half the picture's
+//! resolution, as in most files, so its errors spread up to two pixels.
 
 use glam::DVec3;
 
@@ -86,15 +87,15 @@ pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<DVe
         let [least, most] = range(mean, width, at, reach);
         let mixed = most - least;
         DVec3::from([0, 1, 2].map(|i| {
-            // The coefficients are rounded to multiples of their steps. Before and after the
-            // transform, values are also rounded or truncated to whole numbers. The mean squared
-            // error of truncation is 1/3, four times that of rounding, so these terms have the
+            // The coefficients are rounded to multiples of their steps. The last term is for values
+            // that are rounded or truncated to whole numbers before and after the transform. The
+            // mean squared error of truncation is 1/3, four times that of rounding, hence the
             // factor 4.
             let share = SHARES[i] * SHARES[i];
             let steps = square(&jpeg.luma) + share * square(&jpeg.chroma) + 4.0 * (2.0 + share);
-            // A change of an 8-bit value changes the light more in bright areas than in dark ones.
-            // So the change of light over five standard deviations upwards is computed, and divided
-            // by five (`DEVIATIONS`).
+            // The light increases faster with the 8-bit value in bright areas than in dark ones. So
+            // the greatest likely error is converted to light: five standard deviations
+            // (`DEVIATIONS`) upwards. The result is divided by five.
             let by = DEVIATIONS * STEP * (steps / 12.0).sqrt();
             let own = [mean[at][i], by];
             if known[i].0 != own {

@@ -107,9 +107,9 @@ impl Prediction<'_> {
                 share = (share + above / below).clamp(1e-6, 1.0);
             }
         }
-        // Predictions may assume different encodings, so they decode the observed light
-        // differently. Their probability densities are converted to densities of the light that
-        // viewers see, so that they can be compared.
+        // The likelihood of the decoded light is converted to a likelihood of the light that
+        // viewers see. Hypotheses with different encodings decode a picture to different light, so
+        // their likelihoods could not be compared otherwise.
         let stretch = |light: &f64| {
             let own = Curve::Correct.step(self.curve.seen(*light));
             libm::log(own / self.curve.step(*light))

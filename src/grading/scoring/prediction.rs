@@ -14,20 +14,20 @@ use crate::{
     grading::hypotheses::{Curve, Effect, STEP, Tabulated, encoded_quickly, is_near},
 };
 
-/// Variance of one sample, in squared linear light, below which a pixel counts as having one
+/// Variance of one sample, in squared linear light, below which a pixel is treated as having one
 /// colour. With this value, a black pixel may be white in at most about a billionth of its area.
 pub const FLAT: f64 = 1e-9;
 
-/// Light of a channel, from 0 to 1, above which the channel counts as full. The program may have
-/// computed more light, which was clipped. Only the two greatest bytes are above 0.99.
+/// Light of a channel, from 0 to 1, above which the channel is treated as full. The program may
+/// have computed more light, which was clipped. Only the two greatest bytes are above 0.99.
 const FULL: f64 = 0.99;
-/// Light of a channel, from 0 to 1, below which the channel is not used to estimate by which factor
-/// light is multiplied. Rounding to bytes changes a light of 0.01 by up to 3 %, and less light by
-/// more.
+/// Light of a channel, from 0 to 1, below which the channel is not used to estimate the factor by
+/// which a program multiplies light. Rounding to bytes changes a light of 0.01 by up to 3 %, and
+/// less light by more.
 const EMPTY: f64 = 0.01;
-/// Maximum relative difference by which ratios of observed to predicted light count as equal. A
-/// cell's ratio is compared with the median ratio, and the estimated factor with 1. Rounding to a
-/// byte changes a light of 0.01 (`EMPTY`) or more by at most about 3 %.
+/// Maximum relative difference between two ratios of observed to predicted light that are treated
+/// as equal. A cell's ratio is compared with the median ratio, and the estimated factor with 1.
+/// Rounding to a byte changes a light of 0.01 (`EMPTY`) or more by at most about 3 %.
 const ALIKE: f64 = 0.03;
 
 /// Mean change of a value that is truncated to 8 bits, in steps: truncation loses between 0 and 1
@@ -107,8 +107,10 @@ fn map_channels(
     let mut known = [[f64::NAN; 2]; 3];
     for (mean, variance) in mean.iter_mut().zip(variance) {
         for i in 0..3 {
-            let slope = slope_of(mean[i], variance[i]);
-            variance[i] *= slope * slope;
+            if variance[i] != 0.0 {
+                let slope = slope_of(mean[i], variance[i]);
+                variance[i] *= slope * slope;
+            }
             if known[i][0] != mean[i] {
                 known[i] = [mean[i], curve(mean[i])];
             }
@@ -229,9 +231,9 @@ impl<'a> Prediction<'a> {
                             let before = mean[at];
                             let sharp = (*own + more).clamp(DVec3::ZERO, DVec3::ONE);
                             mean[at] = sharp.map(srgb_to_linear);
-                            // Sharpening amplifies noise. The standard deviation that it adds is
-                            // estimated as large as the change of the cell's mean, so the square of
-                            // this change is added to the variance.
+                            // Sharpening amplifies noise. The change of the cell's mean is taken as
+                            // an estimate of the added standard deviation, so its square is added
+                            // to the variance.
                             let by = mean[at] - before;
                             variance[at] += by * by;
                         }
@@ -341,9 +343,10 @@ impl<'a> Prediction<'a> {
             .collect()
     }
 
-    /// Returns the standard deviations that the differences of all cells would have with one sample
-    /// per cell, channel by channel. The greatest deviation among a cell and its neighbours is
-    /// used, so that it is large enough even if edges are displaced by a cell.
+    /// Returns for each cell, channel by channel, the standard deviation of the difference between
+    /// observed and predicted light if the cell had one sample. The greatest variance of a sample
+    /// among the cell and its neighbours is used, so that the result is large enough even if edges
+    /// are displaced by a cell.
     pub fn deviations(&self) -> Vec<f64> {
         let cells = 0..self.observed.len();
         let deviations = cells.flat_map(|at| {

@@ -7,7 +7,7 @@ use std::{cell::OnceCell, sync::Arc};
 use glam::DVec2;
 
 use super::{
-    faulty_tracer::{FaultyTracer, bounds},
+    faulty_tracer::{FaultyTracer, bounds, lattice},
     grid::Grid,
     moments::Moments,
     work::Work,
@@ -40,10 +40,6 @@ pub struct Rendering {
     /// Means and variances if the scene is traced with the faults of the hypothesis; `None` if
     /// there are no faults, or on the coarsest grid.
     behaved: Option<Arc<Moments>>,
-    /// Means and variances of the hypothesis's scene, traced correctly, but estimated from the same
-    /// number of samples as `behaved`. In a cell in which they equal `behaved`, the faults make no
-    /// difference. `None` if they were not computed.
-    sampled: Option<Arc<Moments>>,
 }
 
 impl Rendering {
@@ -54,7 +50,19 @@ impl Rendering {
             part,
             correct: moments,
             behaved: None,
-            sampled: None,
+        }
+    }
+
+    /// Returns the part of the rendering that a grid of the same resolution shows.
+    pub fn cropped(&self, grid: &Grid) -> Self {
+        let part = self.candidate.layout.sources(grid.cells, grid.size);
+        let order: Vec<usize> = part.iter().map(|(x, y)| self.part.index(x, y)).collect();
+        let cropped = |all: &Arc<Moments>| Arc::new(all.select(&order));
+        Self {
+            candidate: self.candidate.clone(),
+            part,
+            correct: cropped(&self.correct),
+            behaved: self.behaved.as_ref().map(cropped),
         }
     }
 
@@ -117,8 +125,7 @@ impl Candidate {
         });
         let scene = OnceCell::new();
         let scene = || scene.get_or_init(|| self.drawn(grid));
-        let sampled = |behaviour: Behaviour, area: Area, samples: usize| {
-            work.pay_for_samples(self.scene.objects.len(), samples, area)?;
+        let tracer = |behaviour: Behaviour| {
             // The scene lacks the objects that the program omits, so the index of the faulty object
             // is converted to its index among the drawn ones.
             let drawn = |at: usize| self.is_drawn[..at].iter().filter(|is| **is).count();
@@ -129,35 +136,29 @@ impl Candidate {
                 pixel: 1.0 + (behaviour.pixel - 1.0) / f64::from(grid.factor),
                 ..behaviour
             };
-            let tracer = FaultyTracer::new(scene(), behaviour, self.decoding);
-            Some(tracer.moments(area, samples))
+            FaultyTracer::new(scene(), behaviour, self.decoding)
         };
+        let objects = self.scene.objects.len();
         let traced = |area| match samples {
             None => work.exact_moments(scene(), self.decoding, area),
-            Some(samples) => sampled(self.behaviour, area, samples),
+            Some(samples) => {
+                work.pay_for_samples(objects, samples, area)?;
+                Some(tracer(self.behaviour).moments(area, samples))
+            }
         };
         let correct = nearest.map(|(one, area)| (&one.correct, area));
         let correct = completed(correct, part, traced)?;
         let mut behaved = None;
-        let is_same = |one: &&Arc<Rendering>| one.part == part && one.candidate.traces_as(self);
-        let mut same = known.iter().filter(is_same);
-        let mut of_correct = same.find_map(|one| one.sampled.clone());
         if samples.is_none() && !self.behaviour.is_correct() {
             let nearest = nearest.filter(|(one, _)| one.candidate.behaviour == self.behaviour);
             let nearest = nearest.and_then(|(one, area)| Some((one.behaved.as_ref()?, area)));
             behaved = Some(completed(nearest, part, |area| {
+                work.pay_for_samples(objects, SAMPLES, area)?;
                 let indices: Vec<usize> = area.iter().map(|(x, y)| part.index(x, y)).collect();
-                let own = match &of_correct {
-                    Some(known) => known.select(&indices),
-                    None => sampled(Behaviour::default(), area, SAMPLES)?,
-                };
-                let other = sampled(self.behaviour, area, SAMPLES)?;
+                let own = tracer(self.behaviour).moments(area, SAMPLES);
+                let right = tracer(Behaviour::default());
                 let correct = correct.select(&indices);
-                let replaced = replaced_where_they_differ(correct, &own, &other);
-                if area == part {
-                    of_correct = Some(Arc::new(own));
-                }
-                Some(replaced)
+                Some(replaced_where_they_differ(correct, &own, &right, area))
             })?);
         }
         Some(Rendering {
@@ -165,7 +166,6 @@ impl Candidate {
             part,
             correct,
             behaved,
-            sampled: of_correct,
         })
     }
 
@@ -231,14 +231,22 @@ fn completed(
     }
 }
 
-/// Replaces exact means and variances by sampled ones in the cells where the program's faults make
-/// a difference. `own` is sampled by a correct tracer, and `other` by the faulty tracer. A cell is
-/// replaced if `own` and `other` differ in it.
-fn replaced_where_they_differ(mut correct: Moments, own: &Moments, other: &Moments) -> Moments {
-    for at in 0..other.mean.len() {
-        let variance = other.variance[at];
-        if own.mean[at] != other.mean[at] || own.variance[at] != variance {
-            (correct.mean[at], correct.variance[at]) = (other.mean[at], variance);
+/// Replaces exact means and variances of the cells of an area by sampled ones where the program's
+/// faults make a difference. `own` has the samples of the faulty tracer. A cell is replaced unless
+/// it agrees with the exact one, or with the same samples of the tracer `right`, which is correct.
+fn replaced_where_they_differ(
+    mut correct: Moments,
+    own: &Moments,
+    right: &FaultyTracer,
+    area: Area,
+) -> Moments {
+    let (places, mut rays) = (lattice(SAMPLES), Vec::new());
+    for (at, cell) in area.iter().enumerate() {
+        let (mean, variance) = (own.mean[at], own.variance[at]);
+        let is_same = (correct.mean[at], correct.variance[at]) == (mean, variance)
+            || right.cell(cell, &places, &mut rays) == (mean, variance);
+        if !is_same {
+            (correct.mean[at], correct.variance[at]) = (mean, variance);
             correct.mean_variance[at] = variance / SAMPLES as f64 + MISSED * MISSED;
         }
     }

@@ -8,8 +8,9 @@ use super::{moments::range, prediction::Prediction};
 /// normally distributed errors is greater.
 pub const DEVIATIONS: f64 = 5.0;
 
-/// Greatest difference that is ignored in a pixel that should show one colour, in 8-bit steps: half
-/// a step for rounding, and a quarter for another way to decode colours.
+/// Greatest difference, in 8-bit steps, that is ignored in a pixel that should show one colour.
+/// Rounding causes up to half a step. A quarter of a step is added, because programs decode colours
+/// in slightly different ways.
 pub const WRONG: f64 = 0.75;
 
 /// Number of pixels of a JPEG's block. The errors of these pixels depend on each other, so a block

@@ -15,8 +15,9 @@ use crate::{
 /// which is enough to find two mistakes in four objects. A picture of 1280 × 720 pixels takes at
 /// most about 4 s.
 const PICTURE: f64 = 9.6e7;
-/// Units of work (about 30 ns each) that are allowed for each pixel of a picture. Large pictures
-/// take longer to compare.
+/// Units of work (about 30 ns each) that are allowed for each pixel of a picture, because large
+/// pictures take longer to compare. With a larger value, more mistakes are found, but judging takes
+/// longer.
 const PIXEL: f64 = 41.0;
 
 /// Approximate cost of preparing an object for an exact picture, in units of about 30 ns.

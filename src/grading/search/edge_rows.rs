@@ -47,6 +47,11 @@ const CODED_ID: &str = "averaged_encoded";
 /// another mistake at edges may merely look like a slight blur.
 const LEFT_BY_FILTER: f64 = 0.5;
 
+/// Maximum ratio of two squared errors on the grid `middle`: with a mistake that is weakly visible
+/// everywhere, and without it. If the ratio is greater, the mistake is not tested on single pixels,
+/// because it explains only a part of the error.
+const LEFT_BY_ROW: f64 = 0.5;
+
 /// Factors by which an estimated pixel width greater than 1 is multiplied. The most likely of the
 /// products is used as the width. More factors would find the width more precisely, but take
 /// longer.
@@ -57,12 +62,6 @@ const LEAST_WIDE: f64 = 1.1;
 /// Widths, in pixels, that are tried for pixels that are too narrow. The most likely width is used.
 /// A few values suffice, because edges determine a narrow width only roughly.
 const NARROW_WIDTHS: [f64; 3] = [0.25, 0.5, 0.7];
-
-/// Divisor of the number of pixels: a picture is much wrong if more than 1/50 of its pixels are
-/// wrong. Mistakes that are weakly visible everywhere are tried only in pictures that are much
-/// wrong, or whose wrong pixels lie at edges. With a smaller divisor, such mistakes would be
-/// overlooked in more pictures.
-const MUCH_WRONG: usize = 50;
 
 /// Maximum difference between the estimated shift of all edges in the picture and the shift that a
 /// mistake causes. If the difference is greater, the mistake is not tried. The unit is a pixel; for
@@ -75,8 +74,9 @@ const MAX_SHIFT_ERROR: f64 = 0.5;
 /// direction with a probability of more than 95 %.
 const MAX_SLIGHT_SHIFT: f64 = 0.35;
 
-/// Maximum number of mistakes that are tried to explain a shift of all edges, those with the most
-/// similar shift first. More would take longer, and explain the shift less well.
+/// Maximum number of mistakes that are tried to explain a shift of all edges. Mistakes that cause
+/// the most similar shift are tried first. A larger number takes longer, and adds only mistakes
+/// that explain the shift less well.
 const SHIFTS: usize = 4;
 
 /// Minimum significance of a change that is observed on the coarsest grid, in standard deviations.
@@ -96,18 +96,11 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
     let edges = judge.central_crop();
     // The hypothesis is tested even if the budget of work is used up, because it may explain the
     // picture.
-    let (residual, null) = judge.work.without_limit(|| {
-        let residual = judge.residual(candidate);
-        residual.zip(judge.judged(candidate, edges))
-    })?;
-    // Truncated bytes and wrong encodings are visible in whole areas, so they are tried even if the
-    // wrong pixels do not lie at edges.
-    let is_much_wrong = residual.strays * MUCH_WRONG > judge.fine.grid.count();
-    if !residual.is_at_edges && !is_much_wrong {
+    let work = &judge.work;
+    let residual = work.without_limit(|| judge.residual(candidate))?;
+    if !residual.is_at_edges && !residual.is_much_wrong {
         return None;
     }
-    let predicted = edges.predict(&null.rendering);
-    edges.compare_with(Arc::clone(&null.rendering));
     // Effects on light and JPEG coding change the noise at edges, so most mistakes at edges cannot
     // be tested.
     let is_coded = judge.fine.jpeg.is_some();
@@ -121,9 +114,21 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
             let may = may || candidate.keeps_light() && row.id == CODED_ID;
             may && residual.is_at_edges && candidate.behaviour.is_in_place()
         }
-        Shows::Everywhere => may && !residual.are_areas_right,
+        // Truncated bytes and wrong encodings are visible in whole areas, so they are tried even
+        // if the wrong pixels do not lie at edges, but only if they explain much of the error.
+        Shows::Everywhere => {
+            let is_likely = || explains_much(judge, candidate, Mistake::Row(row, None));
+            may && !residual.are_areas_right && is_likely() == Some(true)
+        }
     });
-    let rows = rows.map(|row| Mistake::Row(row, None));
+    let rows: Vec<Mistake> = rows.map(|row| Mistake::Row(row, None)).collect();
+    if !residual.is_at_edges && rows.is_empty() {
+        return None;
+    }
+    let null = work.without_limit(|| judge.judged(candidate, edges))?;
+    let predicted = edges.predict(&null.rendering);
+    edges.compare_with(Arc::clone(&null.rendering));
+    let rows = rows.into_iter();
     let is_shifted = candidate.behaviour.is_shifted();
     let by = residual.displacement.filter(|_| !is_shifted);
     let rows = rows.chain(by.into_iter().flat_map(|off| shifts(candidate, off.by)));
@@ -184,8 +189,15 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
         .or_else(|| residual.is_noise().then(|| candidate.clone()))
 }
 
-/// Returns the mistakes that shift samples by about `by` pixels to the right and down, those with
-/// the most similar shift first.
+/// Returns whether a mistake reduces the error on the grid `middle` to at most [`LEFT_BY_ROW`].
+/// Returns `None` if the mistake is impossible, or if the budget of work is used up.
+fn explains_much(judge: &Judge, candidate: &Candidate, mistake: Mistake) -> Option<bool> {
+    let after = judge.square(&candidate.with(mistake)?)?;
+    Some(after <= LEFT_BY_ROW * judge.square(candidate)?)
+}
+
+/// Returns the mistakes that shift samples by about `by` pixels to the right and down. The mistake
+/// with the most similar shift comes first.
 fn shifts(candidate: &Candidate, by: [f64; 2]) -> Vec<Mistake> {
     let rows = ROWS.iter().filter(|row| SHIFT_IDS.contains(&row.id));
     let by = candidate.layout.source_direction(by);
@@ -204,7 +216,7 @@ fn shifts(candidate: &Candidate, by: [f64; 2]) -> Vec<Mistake> {
 }
 
 /// Returns a hypothesis if it explains the picture, either with its present numbers or after these
-/// are fitted again.
+/// are fitted again. Otherwise returns `None`.
 fn fitted_with(judge: &Judge, with: Candidate) -> Option<Candidate> {
     if judge.explains(&with) {
         return Some(with);

@@ -11,7 +11,7 @@ use super::{
     edge_rows::{ROUNDS, explained_with, rows_in_areas},
     joint,
     judge::{Judge, Judged, least},
-    numeric_mistakes::{numeric_mistakes, slightly_wrong},
+    numeric_mistakes::{numeric_mistakes, slightly_wrong, suspects},
     patch::patch,
     plain_numbers::plain,
 };
@@ -46,37 +46,34 @@ const NUMBER_PENALTY: f64 = 1.03;
 const EXACT_ROWS: usize = 32;
 
 /// Maximum number of sets that are examined because their mistakes may explain the picture only
-/// together. The sets with the least difference from the picture are examined first. A larger
-/// number takes longer.
+/// together. Those with the least difference from it come first. A larger number takes longer.
 const JOINT_SETS: usize = 2;
 
-/// Threshold below which an extended set of mistakes is examined at once: the ratio of its
-/// difference from the picture to that of the set before the extension. If the extended set
-/// explains the picture, no other kinds of mistakes are tried. With a larger threshold, more sets
-/// would be examined in vain.
+/// Threshold below which an extended set of mistakes is examined at once: its difference from the
+/// picture, divided by the difference before the extension. If the extended set explains the
+/// picture, no other kinds of mistakes are tried. With a larger threshold, more sets would be
+/// examined in vain.
 const PROMISING: f64 = 0.5;
 
-/// Maximum ratio of two squared differences from the student's picture, that of a hypothesis to
-/// that of a correct program, at which the hypothesis counts as close. Differences that sampling
-/// can explain are ignored. Only close hypotheses are fitted completely, because this takes long.
+/// Threshold up to which a hypothesis is close to the student's picture: its squared difference
+/// from this picture, divided by that of a correct program. Differences that sampling can explain
+/// are ignored. Only close hypotheses are fitted completely, because this takes long.
 const NEAR_RATIO: f64 = 0.1;
 
-/// Maximum ratio of a hypothesis's squared difference from the student's picture to the least of
-/// all hypotheses so far. If the ratio is larger, the numbers of the hypothesis are not fitted
-/// further: it is unlikely to become the best, even with an added mistake at edges.
+/// Maximum ratio of a hypothesis's squared difference from the student's picture to the least one
+/// so far. If the ratio is larger, the numbers of the hypothesis are not fitted further: it is
+/// unlikely to become the best, even with an added mistake at edges.
 const WORSE: f64 = 4.0;
-/// Ratio of two squared differences from the student's picture, that of a hypothesis to that of a
-/// correct program, up to which the hypothesis is always fitted further. Without this limit, a
-/// hypothesis without any difference would exclude all others from further fitting.
+/// Threshold up to which a hypothesis is always fitted further: its squared difference from the
+/// student's picture, divided by that of a correct program. Without this threshold, a hypothesis
+/// without any difference would exclude all others from further fitting.
 const NEGLIGIBLE: f64 = 1e-3;
 
-/// Maximum number of objects that are suspected to be wrong. Those with the largest error in and
-/// beside them come first. The work of a search grows with this number.
-const MAX_SUSPECTS: usize = 12;
-
-/// Threshold below which an object is not suspected to be wrong: the ratio of the error in and
-/// beside it to that of the worst object. Smaller errors are mostly noise.
-const SUSPECT_RATIO: f64 = 0.03;
+/// Maximum squared difference from the student's picture, divided by that of a correct program, at
+/// which a set of two mistakes is extended by a third. If two mistakes leave more than half of the
+/// difference, the picture most likely shows something else. Extending such sets in vain took a
+/// third of the time of judging a picture of another scene.
+const EXTENDED: f64 = 0.5;
 
 /// Searches for the mistakes that explain a picture best. Tries sets of at most `most` mistakes,
 /// and adds a few that are visible only at edges. Returns the best hypothesis, i.e. set of
@@ -87,6 +84,7 @@ pub fn run(judge: &Judge, most: usize) -> Result<Option<(Judged, bool)>, Cancell
         examined: Vec::new(),
         completed: Vec::new(),
         least_left: f64::INFINITY,
+        cost_of_correct: f64::INFINITY,
         nearest: None,
         explained: None,
     };
@@ -135,12 +133,15 @@ struct Search<'a> {
     /// Sets of mistakes with completely fitted numbers that do not explain the picture, even with a
     /// mistake at edges.
     completed: Vec<Vec<Mistake>>,
-    /// Least value of [`left`] for any hypothesis so far.
+    /// Least squared difference from the student's picture for any hypothesis so far, divided by
+    /// that of a correct program.
     least_left: f64,
-    /// Hypothesis with the least cost so far, and its cost.
+    /// Cost of a correct program.
+    cost_of_correct: f64,
+    /// Hypothesis with the least cost so far, and its cost; `None` at the start.
     nearest: Option<(f64, Candidate)>,
-    /// Hypothesis that explains the picture, and its cost. Of several, the one with the fewest
-    /// parameters is kept; of these, the one with the least cost.
+    /// Hypothesis that explains the picture, and its cost; `None` if none is known. If several
+    /// explain it, the one with the fewest parameters; if these are equal, the one of least cost.
     explained: Option<(f64, Candidate)>,
 }
 
@@ -148,10 +149,19 @@ impl Search<'_> {
     fn run(&mut self, most: usize) {
         let judge = self.judge;
         let mut beam = Vec::from_iter(self.examine(&Candidate::correct(judge.scene)));
+        if let [correct] = &beam[..] {
+            self.cost_of_correct = correct.cost;
+        }
         for size in 1..=most {
             let mut examined: Vec<Judged> = Vec::new();
             let mut next: Vec<(f64, Candidate)> = Vec::new();
-            for extension in beam.iter().map_while(|from| Extension::from(judge, from)) {
+            for from in &beam {
+                if self.is_explained_by(size) {
+                    break;
+                }
+                let Some(extension) = Extension::from(judge, from) else {
+                    break;
+                };
                 let enough =
                     PROMISING * penalised(extension.difference, extension.from.candidate());
                 for kind in Extension::KINDS {
@@ -174,8 +184,12 @@ impl Search<'_> {
                     }
                 }
             }
-            for (_, one) in least(next.into_iter(), BEAM_WIDTH - examined.len()) {
-                examined.extend(self.examine(&one));
+            // If a promising set explains the picture, the others explain less than half of the
+            // difference from it, so they are not examined.
+            if !self.is_explained_by(size) {
+                for (_, one) in least(next.into_iter(), BEAM_WIDTH - examined.len()) {
+                    examined.extend(self.examine(&one));
+                }
             }
             if let Some(best) = beam.first() {
                 self.refine(best, &mut examined);
@@ -193,6 +207,10 @@ impl Search<'_> {
             }
             examined.sort_by(|one, other| one.cost.total_cmp(&other.cost));
             examined.truncate(BEAM_WIDTH);
+            if size > 1 {
+                let left = |one: &Judged| left(judge, one.candidate());
+                examined.retain(|one| left(one).is_some_and(|left| left <= EXTENDED));
+            }
             beam = examined;
         }
     }
@@ -225,8 +243,8 @@ impl Search<'_> {
 
     /// Returns whether a known hypothesis explains the picture with fewer parameters, or with as
     /// many and at no greater cost. If the known hypothesis intersects spheres wrongly, mistakes
-    /// are counted instead of parameters, so that it does not exclude a hypothesis with a single
-    /// mistake of many numbers.
+    /// are counted instead of parameters. Otherwise, it would exclude a single wrong vector, which
+    /// has several parameters.
     fn has_better(&self, candidate: &Candidate, cost: f64) -> bool {
         let explained = self.explained.as_ref();
         explained.is_some_and(|(least, explained)| {
@@ -254,11 +272,13 @@ impl Search<'_> {
         let fitted = fitted.map_or_else(|| candidate.clone(), |(fitted, _)| fitted);
         let mut judged = judge.judged(&fitted, &judge.middle)?;
         // A hypothesis whose difference is large, or much larger than another one's, is not fitted
-        // further.
+        // further. Nor is a program that traces rays wrongly without any visible effect: its
+        // picture is only sampled, which takes long.
         let left = left(judge, judged.candidate()).unwrap_or(f64::INFINITY);
         self.least_left = self.least_left.min(left);
         let most = NEAR_RATIO.min(f64::max(WORSE * self.least_left, NEGLIGIBLE));
-        if candidate.mistakes.is_empty() || left <= most {
+        let is_idle = !candidate.behaviour.is_correct() && judged.cost >= self.cost_of_correct;
+        if candidate.mistakes.is_empty() || left <= most && !is_idle {
             let level = judge.fitting(judged.candidate());
             if let Some((fitted, _)) = judge.fit_all(judged.candidate(), level, [0, ROUNDS]) {
                 judged = judge.judged(&fitted, &judge.middle)?;
@@ -317,18 +337,16 @@ fn is_near(judge: &Judge, candidate: &Candidate) -> bool {
 /// Returns a hypothesis's squared difference from the student's picture, divided by a correct
 /// program's. Ignores what sampling can explain. Returns `None` if the budget of work is used up.
 fn left(judge: &Judge, candidate: &Candidate) -> Option<f64> {
-    let square = |candidate: &Candidate| {
-        let predicted = judge.predicted(candidate, &judge.middle)?;
-        Some(predicted.strays().square())
-    };
     let all = match judge.square_of_correct.get() {
         Some(all) => *all,
         None => {
-            let all = square(&Candidate::correct(judge.scene))?.max(f64::MIN_POSITIVE);
-            *judge.square_of_correct.get_or_init(|| all)
+            let all = judge.square(&Candidate::correct(judge.scene))?;
+            *judge
+                .square_of_correct
+                .get_or_init(|| all.max(f64::MIN_POSITIVE))
         }
     };
-    Some(square(candidate)? / all)
+    Some(judge.square(candidate)? / all)
 }
 
 /// Removes mistakes from a hypothesis that explains the picture, as long as the remaining mistakes
@@ -415,7 +433,7 @@ impl<'a> Extension<'a> {
 
     /// Returns the extensions of one kind whose difference from the picture is less than that of
     /// the set itself. Each comes with its difference, multiplied by the penalties for its mistakes
-    /// and parameters. The least comes first.
+    /// and parameters. The least difference comes first.
     fn improvements(&self, kind: fn(&Self) -> Rated) -> Rated {
         let less = kind(self).into_iter().filter(|one| one.0 < self.difference);
         least(
@@ -478,23 +496,4 @@ fn penalised(difference: f64, candidate: &Candidate) -> f64 {
     let [mistakes, numbers] =
         [candidate.mistakes.len(), candidate.parameter_count()].map(|count| count as f64);
     difference * libm::pow(MISTAKE_PENALTY, mistakes) * libm::pow(NUMBER_PENALTY, numbers)
-}
-
-/// Returns the indices of the objects that may be wrong, the one with the largest error first.
-fn suspects(judge: &Judge, from: &Judged) -> Vec<usize> {
-    let grid = &judge.middle.grid;
-    let labels = judge.labels(from.candidate(), from.candidate().layout, grid);
-    let mut wrong = vec![0.0; judge.scene.objects.len()];
-    for (at, off) in from.score.chi_squares.iter().enumerate() {
-        // An object that is larger than in the hypothesis's scene causes errors beside the cells in
-        // which the hypothesis shows it. So an error is attributed to all objects near the cell.
-        let near: BTreeSet<usize> = grid.around(at, 2).filter_map(|at| labels[at]).collect();
-        near.into_iter()
-            .for_each(|object| wrong[object] += libm::log1p(*off));
-    }
-    let most = wrong.iter().copied().fold(0.0, f64::max);
-    let wrong = (0..).zip(wrong);
-    let wrong = wrong.filter(|(_, wrong)| *wrong > SUSPECT_RATIO * most);
-    let suspects = least(wrong.map(|(object, wrong)| (-wrong, object)), MAX_SUSPECTS);
-    suspects.into_iter().map(|(_, object)| object).collect()
 }

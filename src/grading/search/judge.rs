@@ -52,7 +52,7 @@ pub struct Judge<'a> {
     pub middle: Level<'a>,
     pub fine: Level<'a>,
     /// The central crop at full resolution; `None` if the picture has no more pixels than the crop.
-    central: Option<Level<'a>>,
+    pub central: Option<Level<'a>>,
     pub work: Work<'a>,
     /// Residuals of the last few hypotheses. A hypothesis is identified by its mistakes.
     pub residuals: RefCell<VecDeque<(Vec<Mistake>, Residual)>>,
@@ -65,14 +65,14 @@ pub struct Judge<'a> {
 /// What a hypothesis leaves unexplained in the pixels of a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Residual {
-    /// Number of pixels that should show one colour and show another one.
-    pub strays: usize,
     /// Whether areas of one colour are right, and errors in all other pixels look like noise. If
     /// the prediction was sampled, a few pixels in the areas may be wrong, because samples may have
     /// missed a small detail.
     pub are_areas_right: bool,
     /// Whether almost all wrong pixels lie near edges.
     pub is_at_edges: bool,
+    /// Whether so many pixels of one colour are wrong that a mistake may be visible everywhere.
+    pub is_much_wrong: bool,
     /// Whether errors in pixels that mix several colours look like sampling noise.
     pub is_noise_everywhere: bool,
     /// Displacement of edges; `None` if it may be chance. Tested only if the wrong pixels lie near
@@ -163,10 +163,10 @@ impl<'a> Judge<'a> {
         self.central.as_ref().unwrap_or(&self.fine)
     }
 
-    /// Makes a hypothesis the base of comparisons: later hypotheses are rendered only where they
-    /// differ from it.
+    /// Makes a hypothesis the base of comparisons on the grids `coarse` and `middle`: later
+    /// hypotheses are rendered only where they differ from it.
     pub fn compare_with(&self, candidate: &Candidate) {
-        for level in [&self.coarse, &self.middle, &self.fine] {
+        for level in [&self.coarse, &self.middle] {
             if let Some(rendering) = level.render(candidate, &self.work) {
                 level.compare_with(rendering);
             }
@@ -182,14 +182,12 @@ impl<'a> Judge<'a> {
         let level = &self.tiny;
         let sampled = level.render(candidate, &self.work)?;
         level.compare_with(Arc::clone(&sampled));
-        let mut exact = Arc::clone(&sampled);
-        if candidate.behaviour.is_correct() {
-            let fine = self.fine.render(candidate, &self.work)?;
-            if fine.part == self.fine.grid.cells {
-                exact = level.reduced(&fine);
-            }
+        let sampled = level.predict(&sampled);
+        if !candidate.behaviour.is_correct() {
+            return Some(level.with_error(&sampled, &sampled));
         }
-        Some(level.with_error(&level.predict(&sampled), &level.predict(&exact)))
+        let exact = candidate.render(&level.grid, None, &[], &self.work)?;
+        Some(level.with_error(&sampled, &level.predict(&exact)))
     }
 
     /// Predicts what the picture shows at one resolution if a hypothesis is correct. Returns `None`
@@ -201,6 +199,12 @@ impl<'a> Judge<'a> {
         Some(level.predict(&rendering))
     }
 
+    /// Returns the squared error that a hypothesis leaves on the grid `middle`, apart from what
+    /// sampling can explain. Returns `None` if the budget of work is used up.
+    pub fn square(&self, candidate: &Candidate) -> Option<f64> {
+        Some(self.predicted(candidate, &self.middle)?.strays().square())
+    }
+
     /// Returns the differences between the picture and a hypothesis's prediction at one resolution,
     /// channel by channel. Returns `None` if the budget of work is used up.
     pub fn differences(&self, candidate: &Candidate, level: &Level) -> Option<Vec<f64>> {
@@ -208,8 +212,9 @@ impl<'a> Judge<'a> {
         Some(self.predicted(candidate, level)?.differences())
     }
 
-    /// Returns a hypothesis with its difference from the picture at one resolution: the sum of the
-    /// absolute differences of all cells.
+    /// Computes a hypothesis's difference from the picture at one resolution: the sum of the
+    /// absolute differences of all cells. Returns it with the hypothesis. Returns `None` if the
+    /// budget of work is used up.
     pub fn with_difference(&self, candidate: Candidate, level: &Level) -> Option<(f64, Candidate)> {
         let differences = self.differences(&candidate, level)?;
         Some((absolute(&differences), candidate))
@@ -234,7 +239,8 @@ impl<'a> Judge<'a> {
         grid.cells.iter().map(label).collect()
     }
 
-    /// Computes the score and the cost of a hypothesis at one resolution.
+    /// Computes the score and the cost of a hypothesis at one resolution. Returns `None` if the
+    /// budget of work is used up.
     pub fn judged(&self, candidate: &Candidate, level: &Level) -> Option<Judged> {
         let rendering = level.render(candidate, &self.work)?;
         let score = level.predict(&rendering).score();

@@ -9,8 +9,9 @@
 
 use crate::grading::scoring::solve;
 
-/// Largest move of a number at which the fit counts as converged. The unit is the change by which
-/// the number's derivative is found. With a smaller value, the fit takes more rounds.
+/// Largest move of a number at which the fit stops as converged. The unit is the change by which
+/// the number's derivative is found. With a smaller value, the fit takes more rounds; with a larger
+/// one, it may stop before the best numbers.
 const CLOSE: f64 = 0.05;
 
 /// The result of a fit.
@@ -90,7 +91,8 @@ pub fn fit(
                 let Some((by, other)) = varied(steps[i]).or_else(|| varied(-steps[i])) else {
                     break 'fitting;
                 };
-                // Derivatives are per step, so that all numbers have the same scale.
+                // Each derivative is multiplied by the number's entry in `steps`, so that all
+                // numbers have the same scale.
                 let sign = steps[i] / by;
                 let slope = other.iter().zip(&now).map(|(b, a)| sign * (b - a));
                 slopes.push(slope.collect());

@@ -2,6 +2,8 @@
 //!
 //! Many starting values are compared on the coarsest grid, and the best of them are fitted to it.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 
 use super::judge::{CELL_STEP, Judge, Judged, least};
@@ -14,13 +16,22 @@ use crate::{
     scene::View,
 };
 
-/// Number of starting values from which a field of the scene is fitted on the coarsest grid, the
-/// best first. More starting values take longer, but a fit ends less often in a wrong minimum.
+/// Number of starting values from which a field of the scene is fitted on the coarsest grid. The
+/// starting values with the least difference from the picture are used. More of them take longer,
+/// but a fit ends less often in a wrong minimum.
 const STARTS: usize = 2;
 
-/// Number of fields of the scene that are fitted on the coarsest grid. Those with the best starting
-/// value come first. A larger number takes longer.
+/// Number of fields of the scene that are fitted on the coarsest grid. The fields whose starting
+/// values lead to the least difference from the picture come first. A larger number takes longer.
 const STARTED: usize = 12;
+
+/// Maximum number of objects that are suspected to be wrong. Those with the largest error in and
+/// beside them come first. The work of a search grows with this number.
+const MAX_SUSPECTS: usize = 12;
+
+/// Threshold below which an object is not suspected to be wrong: the error of its pixels and their
+/// neighbours, divided by the same error of the worst object. Smaller errors are mostly noise.
+const SUSPECT_RATIO: f64 = 0.03;
 
 /// Factors by which slips of the hand multiply a number: a wrong sign, a double, a half, and a
 /// decimal point that is forgotten or moved.
@@ -71,9 +82,10 @@ pub fn numeric_mistakes(
     fitted.collect()
 }
 
-/// Number of fields of the scene that are fitted completely, starting from their present numbers,
-/// on a grid of low resolution. All fields are fitted for one round. The fields with the least
-/// remaining difference from the picture are selected. A larger number takes longer.
+/// Number of fields of the scene whose fit is continued after the first round. In the first round,
+/// every field that may be wrong is fitted on a grid of low resolution, starting from its present
+/// numbers. The fields with the least remaining difference from the picture are then fitted
+/// further. A larger number takes longer.
 const NEAR_OWN: usize = 3;
 
 /// Fits each field of the camera and of checkerboards that may be wrong, except colours, starting
@@ -110,6 +122,25 @@ pub fn slightly_wrong(judge: &Judge, candidate: &Candidate, suspects: &[usize]) 
     best.map(|(_, one)| one).collect()
 }
 
+/// Returns the indices of the objects that may be wrong, the one with the largest error first.
+pub fn suspects(judge: &Judge, from: &Judged) -> Vec<usize> {
+    let grid = &judge.middle.grid;
+    let labels = judge.labels(from.candidate(), from.candidate().layout, grid);
+    let mut wrong = vec![0.0; judge.scene.objects.len()];
+    for (at, off) in from.score.chi_squares.iter().enumerate() {
+        // An object that is larger than in the hypothesis's scene causes errors beside the cells in
+        // which the hypothesis shows it. So an error is attributed to all objects near the cell.
+        let near: BTreeSet<usize> = grid.around(at, 2).filter_map(|at| labels[at]).collect();
+        near.into_iter()
+            .for_each(|object| wrong[object] += libm::log1p(*off));
+    }
+    let most = wrong.iter().copied().fold(0.0, f64::max);
+    let wrong = (0..).zip(wrong);
+    let wrong = wrong.filter(|(_, wrong)| *wrong > SUSPECT_RATIO * most);
+    let suspects = least(wrong.map(|(object, wrong)| (-wrong, object)), MAX_SUSPECTS);
+    suspects.into_iter().map(|(_, object)| object).collect()
+}
+
 /// Returns whether an object is a checkerboard.
 fn is_board(candidate: &Candidate, object: usize) -> bool {
     candidate.scene.objects[object].shape.center().is_none()
@@ -122,8 +153,10 @@ fn suspected(candidate: &Candidate, suspects: &[usize]) -> Vec<Parameter> {
             let [own, other] = [object, suspect].map(|index| &candidate.scene.objects[index]);
             object == suspect || own.is_beside(other)
         }),
-        // A wrong camera moves all objects. So the camera is not suspected if only one object is
-        // suspected, unless this object is a checkerboard, which may fill most of the picture.
+        // A wrong camera moves all objects. So the camera is not suspected if only one of several
+        // objects is suspected, unless this object is a checkerboard, which may fill most of the
+        // picture. The near and far planes are suspected anyway, because they may cut off a single
+        // object.
         Owner::Camera if !matches!(parameter.fields[0], "near" | "far") => match suspects {
             [sole] if candidate.scene.objects.len() > 1 => is_board(candidate, *sole),
             _ => true,
@@ -162,8 +195,8 @@ fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
     colors.iter().flat_map(color).collect()
 }
 
-/// Returns starting values for the depth of the near or far plane: its present depth, and depths
-/// around a reference distance. Each of these is 1.2 times the one before. The reference is the
+/// Returns starting values for the depth of the near or far plane: its present depth, and a series
+/// of depths around a reference distance, each 1.2 times the one before. The reference is the
 /// distance from the eye to the point that the camera looks at, or to the origin if there is no
 /// such point.
 fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {

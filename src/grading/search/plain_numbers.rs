@@ -27,8 +27,9 @@ const QUARTERS: i32 = 5;
 /// be generous, because a test of the rounded numbers follows.
 const DEVIATIONS: f64 = 8.0;
 
-/// Maximum number of rounds of fitting the other numbers, after one was replaced by the scene's
-/// own. More rounds take longer; with fewer, the other numbers may not reach their best values.
+/// Maximum number of rounds of fitting the other numbers, after one number was replaced by the
+/// scene's own number. More rounds take longer; with fewer, the other numbers may not reach their
+/// best values.
 const ROUNDS: usize = 8;
 
 /// Returns a hypothesis with simplified numbers.
@@ -81,13 +82,13 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
     candidate.clone()
 }
 
-/// Returns variants of a field's wrong numbers in which more numbers are the scene's own. The other
-/// numbers are free, i.e. may be fitted again. In a vector, one or two coordinates are free. In
-/// `eye` and `lookat` together, one point is free. Each variant comes with the indices of its free
-/// numbers.
+/// Returns variants of a field's wrong numbers, in which some are replaced by the numbers of the
+/// correct scene. The other numbers are free, i.e. may be fitted again. In a vector, one or two
+/// coordinates are free. In `eye` and `lookat` together, one point is free. Each variant comes with
+/// the indices of its free numbers.
 ///
 /// Variants with few free numbers come first. The very first ones have no free number: they are the
-/// scene's numbers, one of which is changed by a slip of the hand.
+/// numbers of the correct scene, one of which is changed by a slip of the hand.
 fn plainer(
     scene: &Scene,
     parameter: &Parameter,
@@ -167,12 +168,13 @@ fn slips(
         .collect()
 }
 
-/// Rounds a hypothesis's numbers to as few digits as possible.
+/// Rounds a hypothesis's numbers to as few digits as possible. Returns `None` if no rounding
+/// explains the picture as well, or if the budget of work is used up.
 pub fn shortened(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
     let level = judge.fitting(candidate);
     let (_, fitted) = judge.fit_all(candidate, level, [0, 1])?;
     let long = judge.judged(candidate, level)?;
-    // A shortened number does not count as fitted, so it should have no price. But `judged`
+    // A shortened number is not treated as fitted, so it should have no price. But `judged`
     // includes the prices of all numbers in the cost of a hypothesis. So these prices are added to
     // the limit of the cost.
     let most = long.cost + price(level, fitted.numbers.len());

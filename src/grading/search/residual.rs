@@ -1,5 +1,7 @@
 //! What a hypothesis about the program leaves unexplained in the pixels of a picture.
 
+use std::sync::Arc;
+
 use super::judge::{Judge, Residual};
 use crate::grading::{
     hypotheses::{Candidate, Mistake},
@@ -21,6 +23,16 @@ const CODED_EDGE_REACH: usize = 8;
 /// wrong pixels lie far from all edges. A few such pixels are allowed, because a wide pixel filter
 /// changes pixels slightly even far from an edge. Chosen by trial.
 const PIXELS_PER_INSIDE: usize = 10;
+
+/// Reciprocal of the fraction of a picture's pixels, 1/50 or 2 %, that may be wrong before mistakes
+/// that are weakly visible everywhere are tried, even if the wrong pixels do not lie at edges. With
+/// a smaller number, such mistakes would be overlooked in more pictures.
+const MUCH_WRONG: usize = 50;
+
+/// Number of wrong cells of the grid `middle` that may lie away from all edges before a hypothesis
+/// is rejected without a look at its pixels. Fitted numbers that are not quite right yet may leave
+/// a few. With a larger number, the pixels of more hypotheses are rendered.
+const FEW_INSIDE: usize = 10;
 
 /// Greatest displacement of all edges together that is ignored if each pixel has very many samples,
 /// in pixels. Rounded numbers in a scene may displace edges this far.
@@ -53,14 +65,14 @@ impl Judge<'_> {
     /// Returns whether a hypothesis explains the picture: no pixel that should have one colour
     /// shows another one, and edges lie in their places and are as sharp as they should be.
     ///
-    /// If the prediction is exact, the grid `middle` is tested first, because this is faster than
-    /// testing single pixels. A wrong cell contains at least one wrong pixel, so the pixels are not
-    /// tested if a cell is wrong.
+    /// The grid `middle` is tested first, because this is faster than testing single pixels. A
+    /// wrong cell contains at least one wrong pixel, so the test of the pixels can then be skipped.
+    /// JPEG coding is predicted only for single pixels, so the grid does not decide about a JPEG.
     pub fn explains(&self, candidate: &Candidate) -> bool {
-        let is_possible = !self.is_exact(candidate)
+        let is_possible = self.middle.jpeg.is_some()
             || self
                 .predicted(candidate, &self.middle)
-                .is_some_and(|prediction| prediction.strays().are_no_more(0));
+                .is_some_and(|it| it.strays().are_no_more(self.missed(candidate)));
         is_possible
             && self
                 .residual(candidate)
@@ -75,12 +87,39 @@ impl Judge<'_> {
         if let Some((_, residual)) = known.iter().find(|one| is_same(one)) {
             return Some(*residual);
         }
-        let residual = residual_of(self, candidate, &self.predicted(candidate, &self.fine)?);
+        if let Some(residual) = self.far_from_edges(candidate) {
+            return Some(residual);
+        }
+        let rendering = self.fine.render(candidate, &self.work)?;
+        if let Some(central) = &self.central {
+            central.compare_with(Arc::new(rendering.cropped(&central.grid)));
+        }
+        let residual = residual_of(self, candidate, &self.fine.predict(&rendering));
         if known.len() == RESIDUALS {
             known.pop_front();
         }
         known.push_back((candidate.mistakes.clone(), residual));
         Some(residual)
+    }
+
+    /// Returns what a hypothesis leaves unexplained if most wrong cells of the grid `middle` lie
+    /// away from all edges, and they are more than a few. The pixels need not be rendered then.
+    /// JPEG coding changes single pixels, so a JPEG's pixels are always tested.
+    fn far_from_edges(&self, candidate: &Candidate) -> Option<Residual> {
+        let grid = &self.middle.grid;
+        let prediction = self.predicted(candidate, &self.middle)?;
+        let strays = prediction.strays().pixels;
+        let is_inside = |at: &&usize| grid.around(**at, 1).all(|at| prediction.is_flat(at));
+        let inside = strays.iter().filter(is_inside).count();
+        let is_far = 2 * inside > strays.len() && inside > FEW_INSIDE + self.missed(candidate);
+        (is_far && self.fine.jpeg.is_none()).then_some(Residual {
+            are_areas_right: false,
+            is_at_edges: false,
+            is_much_wrong: strays.len() * MUCH_WRONG > grid.count(),
+            is_noise_everywhere: true,
+            displacement: None,
+            width: None,
+        })
     }
 
     /// Returns how many pixels that should have one colour may show another one. Samples may miss
@@ -123,9 +162,9 @@ fn residual_of(judge: &Judge, candidate: &Candidate, prediction: &Prediction) ->
         (None, None, false)
     };
     Residual {
-        strays: strays.pixels.len(),
         are_areas_right: strays.are_no_more(missed) && !is_tinted,
         is_at_edges,
+        is_much_wrong: strays.pixels.len() * MUCH_WRONG > grid.count(),
         is_noise_everywhere: candidate.is_filtered() || prediction.is_noise_everywhere(),
         displacement,
         width,
@@ -143,8 +182,9 @@ fn displacement_and_width(
 ) -> (Option<Displacement>, Option<f64>) {
     let level = &judge.fine;
     let share = match level.jpeg {
-        // In a JPEG, the share is not derived from the number of samples in the score: coding also
-        // changes edges, which would look like fewer samples.
+        // `share` is the variance of a pixel's error, divided by that of one sample. In a JPEG, it
+        // is not derived from the number of samples in the score: coding also changes edges, which
+        // would look like fewer samples.
         Some(_) => prediction.share(),
         None => {
             let score = prediction.score();
@@ -170,9 +210,9 @@ fn displacement_and_width(
     let [none, of_one, of_coded] = IGNORED_OF_OBJECT;
     let more = level.jpeg.map_or(of_one, |_| of_coded);
     let of_object = none + more * share.sqrt();
-    // The width is not estimated if the hypothesis already contains a wrong width. It is not
-    // estimated either if an effect on light does not keep means, since the area over which a pixel
-    // is the mean of light is then unknown.
+    // The pixel width is not estimated if the hypothesis already contains a wrong width. It is not
+    // estimated either if an effect on light does not keep means, because the pixels at edges then
+    // depend on this effect as well as on the width.
     let is_width_explained = candidate.is_filtered() || !candidate.keeps_light();
     let width = (!is_width_explained)
         .then(|| prediction.pixel_width(&deviations, share, level.jpeg.is_some()));

@@ -209,9 +209,9 @@ impl Oracle {
         }
     }
 
-    /// Intersects the ray with the direction `r` from the eye with a sphere. Returns its positive
-    /// parameters t, the smaller first. They are roots of a·t² + 2b·t + c = 0. A ray that only
-    /// touches the sphere misses it.
+    /// Intersects the ray with the direction `r` from the eye with a sphere. Returns the ray's
+    /// parameters t > 0 at the crossings, the smaller first. The parameters are roots of a·t² +
+    /// 2b·t + c = 0. The list is empty if the ray misses or only touches the sphere.
     fn sphere(&self, f: &V, square: &N, c: &N, r: &V) -> Vec<N> {
         let (a, b) = (dot(r, r), dot(f, r));
         let bb = &b * &b;
@@ -253,9 +253,9 @@ impl Oracle {
     }
 
     /// Intersects the ray with the direction `r` from the eye with a box. A box is the intersection
-    /// of three slabs, each between two parallel planes. The ray is inside of the box from the
-    /// greatest t at which it enters a slab to the least t at which it leaves one. Returns these
-    /// two numbers, except negative ones and 0. Returns an empty list if the ray misses the box.
+    /// of three slabs, each between two parallel planes. The ray's line is inside of the box from
+    /// the greatest t at which it enters a slab to the least t at which it leaves one. Returns
+    /// those of these two numbers that are positive. The list is empty if the ray misses the box.
     fn cuboid(&self, lo: &V, hi: &V, r: &V) -> Vec<N> {
         let is_parallel = |axis: &usize| self.sign(&r[*axis], &size(r)) == Ordering::Equal;
         let (parallel, across): (Vec<_>, Vec<_>) = (0..3).partition(is_parallel);

@@ -38,11 +38,11 @@ fn nearly_parallel(random: &mut CaseRng) -> Camera {
     let lowest = random.pick(&[-16.0, -200.0]);
     let view = random.unit() * random.power(-3.0, 3.0);
     let beside = random.unit() * random.power(lowest, -1.0);
-    // In one half of the inputs, the up vector is the view direction plus `beside`, which is
-    // usually much smaller. In the other half, the camera looks nearly straight down, with `beside`
-    // as the deviation, and the up vector is the y axis. The camera also looks down if `beside` is
-    // so small that it is lost in the sum, since the up vector would then be exactly parallel to
-    // the view.
+    // `beside` is a vector that is usually much shorter than the view direction. In one half of the
+    // inputs, the up vector is the sum of the view direction and `beside`. In the other half, the
+    // up vector is the y axis, and the camera looks nearly straight down, with `beside` as the
+    // deviation. The camera also looks down if the sum is exactly parallel to the view direction,
+    // because `beside` is too small to change it.
     let mut camera = along(DVec3::ZERO, view);
     camera.up = view + beside;
     if camera.up.cross(view) == DVec3::ZERO || random.below(2) == 0 {

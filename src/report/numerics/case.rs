@@ -1,5 +1,6 @@
-//! A hard case of the arithmetic. It generates random inputs and tests Pinhole's answers: what is
-//! seen at points of scenes' pictures, or the axes of cameras.
+//! A hard case: a kind of scene or camera for which rounding errors easily cause wrong answers. It
+//! generates random scenes or cameras, and tests what Pinhole computes for them: what is seen at
+//! points of a scene's picture, or the axes of a camera.
 
 use super::{
     inputs::{CaseRng, SamplePoint},

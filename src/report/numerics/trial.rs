@@ -49,7 +49,7 @@ impl CaseTally {
     }
 }
 
-/// Returns the greater of two optional numbers.
+/// Returns the greater of two optional numbers, or the only one. Returns `None` if both are `None`.
 fn greater(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::max)
 }
@@ -247,8 +247,8 @@ impl Trial {
             low = high;
         }
         // The interval is bisected until its ends are neighbouring `f64`s. Near 0, `f64`s are
-        // extremely dense, so there are at most 130 bisections. The interval is then shorter than
-        // any useful distance.
+        // extremely dense, so this would take very long. Therefore, there are at most 130
+        // bisections. The interval is then shorter than any useful distance.
         for _ in 0..130 {
             let middle = low + (high - low) / 2.0;
             if middle == low || middle == high {

@@ -45,8 +45,9 @@ struct HorizontalAxis {
     name: &'static str,
     of: fn(&SeriesPoint) -> f64,
     written: fn(f64) -> String,
-    /// Value of the exact method on this axis, for example its CPU time. A vertical line marks it,
-    /// since the method's error is too small for the chart. `None` if there is no such value.
+    /// The quantity's value for the exact method, for example its CPU time. A vertical line marks
+    /// this value, since the method's error is too small for the chart. `None` if there is no such
+    /// value.
     exact: Option<f64>,
     /// Slopes that short lines show for comparison, each with its label.
     guides: &'static [(f64, &'static str)],
@@ -187,9 +188,9 @@ fn draw(canvas: Canvas, measured: &Measurement, against: &HorizontalAxis) -> Dra
 }
 
 /// Draws the vertical line of the exact method. An arrow at its lower end shows that the method's
-/// error lies below the chart. The other methods' lines run from the top left to the bottom right,
-/// so the label is placed at the lower end of the vertical line in the left half of the chart, and
-/// at its upper end in the right half.
+/// error lies below the chart. The other methods' lines run from the upper left to the lower right
+/// of the chart. To avoid them, the label is placed at the lower end of the vertical line if this
+/// line is in the left half of the chart, and otherwise at the upper end.
 fn draw_exact(canvas: &Canvas, x: i32, columns: &Range<i32>, rows: &Range<i32>) -> Drawn {
     let end = rows.end - 2;
     let head = [(x - 6, end - 10), (x, end), (x + 6, end - 10)];

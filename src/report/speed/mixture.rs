@@ -38,15 +38,14 @@ impl Mixture {
         } else {
             Mixed::default()
         };
-        let count = |flags: &mut dyn Iterator<Item = bool>| flags.filter(|is| *is).count() as f64;
-        let edges = count(&mut surfaces.pixels.iter().copied());
+        let edges = surfaces.pixels.iter().filter(|has_edge| **has_edge);
         // A pixel that shows one surface in several colours shows a checkerboard alone.
         let both = surfaces.pixels.iter().zip(&colors.pixels);
-        let board = count(&mut both.map(|(has_edge, has_colors)| *has_colors && !has_edge));
-        let all = surfaces.pixels.len() as f64;
+        let board = both.filter(|(has_edge, has_colors)| **has_colors && !**has_edge);
+        let share = |count: usize| count as f64 / surfaces.pixels.len() as f64;
         Self {
-            edges: edges / all,
-            board: board / all,
+            edges: share(edges.count()),
+            board: share(board.count()),
             is_complete: surfaces.work + colors.work <= MAX_WORK,
         }
     }
@@ -64,8 +63,9 @@ struct Mixed {
 }
 
 impl Mixed {
-    /// Finds the pixels of a world's picture that show several entries of the palette. When the
-    /// work exceeds `limit`, the remaining pixels are treated as showing one entry.
+    /// Finds the pixels of a world's picture that show several colours, or several surfaces if the
+    /// world was made by [`World::by_surface`]. When the work exceeds `limit`, the remaining pixels
+    /// are treated as showing only one.
     fn among(world: &World, limit: u64) -> Self {
         let whole = world.picture();
         let integrator = Integrator::for_values(world, |_| []).with_work_limit(limit);

@@ -182,8 +182,9 @@ fn whole(measured: &Measurement) -> io::Result<Value> {
 /// other.
 const MAGNIFIED: u32 = 5;
 
-/// Returns the values that the page's template needs for a picture. If `difference` is given, the
-/// heat map of the differences from the exact picture is shown below it.
+/// Returns the values that the page's template needs for a picture with the title `name` and the
+/// caption `about`. If `difference` is given, this heat map of the differences from the exact
+/// picture is shown below the picture.
 fn picture(film: &Film, difference: Option<&Film>, name: &str, about: String) -> io::Result<Value> {
     let difference = difference.map(film::data_uri).transpose()?;
     Ok(value! {

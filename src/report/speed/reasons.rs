@@ -55,7 +55,7 @@ pub fn reasons(measured: &Measurement) -> Vec<String> {
 }
 
 /// Compares the method that needs the fewest samples for `error` with the method `random`, whose
-/// samples are independent.
+/// samples are independent. Returns `None` if `random` itself needs the fewest, or has no estimate.
 fn compared(measured: &Measurement, error: f64) -> Option<String> {
     let estimates = measured.series.iter().filter_map(|series| {
         let estimate = measured.estimate(series, error)?;

@@ -89,7 +89,7 @@ pub struct SeriesPoint {
 }
 
 /// Slope of a method's error against the number of samples, both logarithmic, for the last three
-/// measured numbers of samples. If it is s, the error is about proportional to the number of
+/// measured numbers of samples. With the slope s, the error is about proportional to the number of
 /// samples to the power s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EndSlope {
@@ -109,7 +109,7 @@ impl EndSlope {
     /// Minimum value of −`slope` at which the report says that more samples reduce the error. A
     /// smaller value may come from noise in the measurement. For independent samples, the value is
     /// 0.5, far above the minimum.
-    pub const LEAST: f64 = 0.05;
+    pub(super) const LEAST: f64 = 0.05;
 
     /// Returns the factor by which the error falls if there are four times as many samples,
     /// 4^−`slope`. Returns `None` if more samples do not help, or if the line bends.
@@ -123,8 +123,8 @@ impl EndSlope {
         self.settled().map(|slope| libm::pow(10.0, -1.0 / slope))
     }
 
-    /// Returns the slope if more samples reduce the error, and the slope is expected to stay the
-    /// same.
+    /// Returns the slope, or `None` if more samples do not reduce the error, or if the line bends,
+    /// so that the slope for more samples is unknown.
     fn settled(&self) -> Option<f64> {
         (!self.bends && self.slope < -Self::LEAST).then_some(self.slope)
     }

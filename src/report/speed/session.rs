@@ -177,8 +177,8 @@ impl Benchmark<'_> {
             }
             let last = started.elapsed();
             // A render is assumed to take a constant time plus a time proportional to the number of
-            // samples. Since each number is four times the one before, the time will grow by four
-            // times as much as it grew in the last step.
+            // samples. Since each number is four times the one before, the increase of the time
+            // from number to number is also four times the increase before it.
             let next = last + 4 * last.saturating_sub(before);
             if is_open && !self.goes_on(next) {
                 break;
@@ -316,8 +316,7 @@ const OTHER_OBJECT: f64 = 0.25;
 
 /// Returns the area in which the page compares the methods. Areas without background that show an
 /// edge between objects are preferred, and then other areas with an edge. Among equally preferred
-/// areas, the one with the greatest error is returned. Areas are tried at distances of half their
-/// size.
+/// areas, the one with the greatest error is returned. Neighbouring areas overlap by half.
 fn worst_part(world: &World, film: &Film, exact: &Film) -> Result<Area, TooLarge> {
     let whole = world.picture();
     let (width, height) = (whole.width.min(PART.0), whole.height.min(PART.1));

@@ -101,9 +101,9 @@ pub fn verdict(measured: &Measurement, error: f64) -> String {
     verdict
 }
 
-/// Returns the end of a sentence that recommends methods: those with the fewest samples for
-/// `error`. Extrapolated estimates are ignored. Returns `None` if none of the remaining estimates
-/// is below [`TOO_QUICK`], because the methods can then be compared by time.
+/// Returns the end of a sentence that recommends the methods with the fewest samples for `error`.
+/// Extrapolated estimates are ignored. Returns `None` if every remaining estimate is at least
+/// [`TOO_QUICK`], because the methods can then be compared by time.
 fn by_samples(measured: &Measurement, error: f64) -> Option<String> {
     let estimates = measured.series.iter().filter_map(|series| {
         let estimate = measured.estimate(series, error)?;

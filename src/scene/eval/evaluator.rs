@@ -36,8 +36,8 @@ pub fn literal(written: &str, takes: Type) -> Option<Value> {
     value_of(&tree, Some(takes), &sources, &Names::default())
 }
 
-/// Returns the value of an expression, and discards its problems. `wanted` is the type that the
-/// context requires, if it is known.
+/// Returns the value of an expression, or `None` if it has errors. Its problems are discarded.
+/// `wanted` is the type that the context requires, if it is known.
 pub fn value_of<'s>(
     tree: &tree::Value<'s>,
     wanted: Option<Type>,
@@ -181,9 +181,10 @@ impl<'s> Evaluator<'_, 's> {
             .fixes(fixes)
     }
 
-    /// Searches `value` for a name that a `--set` argument of the command line defines. Returns the
-    /// first such name, and the span of the value in the argument. A mistake in `value` must then
-    /// be corrected in the argument, not in the file.
+    /// Searches `value`, a part of the file, for a name that a `--set` argument of the command line
+    /// defines. Returns the first such name, and the span of its value in the argument. Returns
+    /// `None` if there is no such name. Otherwise, a mistake in `value` must be corrected in the
+    /// argument, not in the file.
     pub(super) fn set_in(&self, value: &tree::Value<'s>) -> Option<(&'s str, Span)> {
         let ValueKind::Name(name) = value.kind else {
             return value.parts().into_iter().find_map(|part| self.set_in(part));
@@ -284,7 +285,8 @@ impl<'s> Evaluator<'_, 's> {
 /// Help text for a number above the largest finite `f64`.
 pub(super) const LARGEST: &str = "numbers go up to 1.7976931348623157e308";
 
-/// Returns the colour of a code such as `#ff8000`. The parser has checked the number of digits.
+/// Returns the colour of a code such as `#ff8000`. The code has three or six digits, which the
+/// parser has checked. Returns `None` if it is not a `#` and hexadecimal digits.
 pub(super) fn color_code(written: &str) -> Option<Color> {
     let digits = written.strip_prefix('#')?;
     let code = u32::from_str_radix(digits, 16).ok()?;

@@ -133,9 +133,9 @@ impl<'s> Evaluator<'_, 's> {
 }
 
 /// Returns an example for the missing third coordinate of a vector whose other coordinates are `x`
-/// and `y`. The example is the greater of the two numbers, which suits even the sides of a
-/// triangle: any positive sides `x`, `y` and `max(x, y)` form one. If both numbers are 0, it is 1,
-/// because a zero vector has no direction.
+/// and `y`: the greater of `x` and `y`, or 1 if both are 0, because a zero vector has no direction.
+/// The example is also right for the `sides` of a triangle, since `x`, `y` and the greater of them
+/// always form one. Returns `None` if `x` or `y` is not a number.
 fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
     let (a, b): (f64, f64) = (x.parse().ok()?, y.parse().ok()?);
     Some(match (a > b, a == 0.0 && b == 0.0) {

@@ -27,9 +27,9 @@ impl<'s> Evaluator<'_, 's> {
             return value;
         }
         let defined = self.names.defined.get(name);
-        // A definition below this use may already have a value: if there are `--set` arguments, all
-        // definitions are evaluated before the blocks. In the text of the file, a name may only be
-        // used below its definition, so a definition below the use is ignored.
+        // If there are `--set` arguments, all definitions are evaluated before the blocks. A name
+        // may then already have a value although its definition stands below this use. The language
+        // does not allow this in a file, so such a definition is ignored.
         let is_above =
             |defined: &&Defined| span.source != SourceId::File || defined.place.start < span.start;
         if let Some(defined) = defined.filter(is_above) {
@@ -106,7 +106,7 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     /// If a hyphenated colour such as `light-blue` starts at `span`, returns its span and its name
-    /// in one word, such as `lightblue`.
+    /// in one word, such as `lightblue`. Otherwise returns `None`.
     fn hyphenated(&self, span: Span) -> Option<(Span, String)> {
         let text = self.sources.get(span.source).text().get(span.start..)?;
         let is_other = |c: char| !c.is_ascii_alphanumeric() && c != '-';

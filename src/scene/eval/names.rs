@@ -135,9 +135,10 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Removes and returns a `let` with the same name as `index` that stands further down in the
-    /// file, so that the index can be defined. Such a `let` may already be defined if there are
-    /// `--set` arguments, since all definitions are then evaluated before the blocks.
+    /// Removes and returns the `let` with the same name as `index` if it stands further down in the
+    /// file, so that the index can be defined. Otherwise returns `None`. Such a `let` may already
+    /// be defined if there are `--set` arguments, since all definitions are then evaluated before
+    /// the blocks.
     pub fn hide_below(&mut self, index: Name<'s>) -> Option<(&'s str, Defined)> {
         let place = self.place(index.text)?;
         let is_below = place.source == index.span.source && place.start > index.span.start;

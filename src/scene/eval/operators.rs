@@ -35,7 +35,8 @@ impl<'s> Evaluator<'_, 's> {
         negative
     }
 
-    /// Returns the result of operators of one precedence, applied from left to right.
+    /// Returns the result of operators of one precedence, applied from left to right. If an operand
+    /// or an operator has an error, reports it and returns `None`.
     pub(super) fn chain(
         &mut self,
         first: &tree::Value<'s>,

@@ -307,9 +307,9 @@ impl Lowering<'_> {
                 continue;
             }
             reported = Some(place);
-            // The suggested side of a square is 1 m. If such squares are still too small for the
-            // samples, the suggestion is the vertical distance of the eye from the board. If this
-            // is too small as well, no side is suggested.
+            // The suggested side of a square is 1 m. If samples could not tell such squares apart
+            // either, the suggestion is the vertical distance of the eye from the board. If this is
+            // too small as well, no side is suggested.
             let height = (board.y - camera.eye.y).abs();
             let larger = [1.0, height].into_iter().find(|&square| !is_lost(square));
             let larger = larger.map(numbers::short);

@@ -222,7 +222,7 @@ impl<'s> Lowering<'s> {
     }
 
     /// Returns the value of an expression; `wanted` is the type that the context requires, if it is
-    /// known.
+    /// known. If the expression has errors, reports them and returns `None`.
     pub(super) fn evaluate(
         &mut self,
         value: &tree::Value<'s>,

@@ -372,7 +372,8 @@ impl<'s> Lowering<'s> {
         };
         let texts = [corner, size].map(|it| self.sources.text(it.span));
         let written = format!("{} {sign} {}", texts[0], texts[1]);
-        // After a minus, a sum would need parentheses, so there is no fix.
+        // If `min` is to be written as `max - size` and the size is a sum, the size would need
+        // parentheses, so there is no fix.
         let is_sum = sign == "-" && size.value.is_some() && !texts[1].starts_with('(');
         let is_sum = is_sum && texts[1].contains(['+', '-']);
         (!is_sum).then(|| Fix::write(size.field(), format!("{other} {written}")))

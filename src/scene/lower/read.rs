@@ -13,8 +13,12 @@ use crate::{
         overrides,
         semantic_model::{Parts, SemanticModel},
     },
+    schema::{self, predefined},
     source::{SourceId, Sources, Span, sort_by_span},
-    syntax::{self, tree::Item},
+    syntax::{
+        self,
+        tree::{self, Item, ValueKind},
+    },
 };
 
 /// Number of bytes at the start of a file in which zero bytes are counted. Zero bytes show that the
@@ -63,20 +67,37 @@ fn read_as_far(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Reading 
 }
 
 /// Reads a file in parts of at least `bytes` bytes. Returns `None` if it has problems.
-fn in_parts(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Option<Reading> {
+fn in_parts<'s>(sources: &'s Sources, bytes: usize, cancel: &'s AtomicBool) -> Option<Reading> {
     let mut lowering = Lowering::new(sources, Names::default(), cancel);
     let mut overrides = overrides::read(sources, &mut lowering.problems);
     // The value of a `--set` argument may use all names of the file. Items with such a value are
     // therefore converted last.
     let mut last = Vec::new();
     let file = &sources.file;
+    // Objects that depend on no other item are converted on the thread that parsed them.
+    let prepare = |mut items: Vec<Item<'s>>| {
+        let mut part = Lowering::new(sources, Names::default(), cancel);
+        let alone: Vec<_> = items
+            .extract_if(.., |item| part.stands_alone(item))
+            .collect();
+        part.items(&alone);
+        (part, items)
+    };
     let all = lowering.is_right()
-        && syntax::parse_in_parts(file, SourceId::File, bytes, cancel, |mut items| {
-            overrides::apply(&mut overrides, &mut items);
-            last.extend(items.extract_if(.., |item| overrides::is_set(item)));
-            lowering.items(&items);
-            lowering.is_right()
-        });
+        && syntax::parse_in_parts(
+            file,
+            SourceId::File,
+            bytes,
+            cancel,
+            prepare,
+            |(part, mut items)| {
+                let is_new = lowering.add(part);
+                overrides::apply(&mut overrides, &mut items);
+                last.extend(items.extract_if(.., |item| overrides::is_set(item)));
+                lowering.items(&items);
+                is_new && lowering.is_right()
+            },
+        );
     if !all {
         return None;
     }
@@ -139,6 +160,31 @@ impl<'s> Lowering<'s> {
         }
     }
 
+    /// Returns whether an item makes an object, whatever the other items of the file are: it uses
+    /// no defined name, and no `--set` argument changes it.
+    fn stands_alone(&self, item: &Item<'s>) -> bool {
+        let Item::Block(block) = item else {
+            return false;
+        };
+        let row = block.kind.and_then(|kind| schema::block(kind.text));
+        row.is_some_and(|row| row.is_object)
+            && block.repetition.is_none()
+            && (block.name.is_none() || self.sources.sets.is_empty())
+            && !block.fields.iter().any(|field| has_names(&field.value))
+    }
+
+    /// Adds the objects of a part of the file that was converted on another thread. Returns `false`
+    /// if the part has problems, or an object with the name of an earlier one.
+    fn add(&mut self, mut part: Self) -> bool {
+        self.has_items |= part.has_items;
+        self.has_objects |= part.has_objects;
+        self.objects.append(&mut part.objects);
+        self.boards.append(&mut part.boards);
+        let is_right = part.is_right();
+        let mut names = part.first_names.into_iter();
+        is_right && names.all(|(name, place)| self.first_names.insert(name, place).is_none())
+    }
+
     /// Returns whether there are no problems so far.
     fn is_right(&self) -> bool {
         self.problems.is_empty() && self.names.problems.borrow().is_empty()
@@ -177,6 +223,15 @@ impl<'s> Lowering<'s> {
         });
         diagnostic::sort(&mut diagnostics);
         (parts, diagnostics, self.names)
+    }
+}
+
+/// Returns whether a value uses names that are not predefined.
+fn has_names(value: &tree::Value<'_>) -> bool {
+    match &value.kind {
+        ValueKind::Name(name) => predefined(name).is_none(),
+        ValueKind::Number(_) => false,
+        _ => value.parts().into_iter().any(has_names),
     }
 }
 

@@ -362,9 +362,10 @@ impl<'s> Lowering<'s> {
         let with_index: Vec<Span> = with_index
             .filter(|it| self.depends(*it, repetition))
             .collect();
-        // The first combination of indices is tried first, so a problem that all combinations have
-        // is found there. If such a problem is about a value that depends on no index, a label with
-        // the indices would be misleading, so none is added.
+        // The objects are built in the order of the indices' values, starting with all indices 0. A
+        // mistake that occurs for all values is therefore found for these zeros. If it is in a
+        // value that depends on no index, a label with the indices would be misleading, so none is
+        // added.
         let is_first = values.iter().all(|&value| value == 0);
         // If an expression depends on an index, a fix must not replace it by the value that it has
         // for one combination.

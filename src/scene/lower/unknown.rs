@@ -258,9 +258,9 @@ impl<'s> Lowering<'s> {
         Some(if is_near { meant } else { meant.unsure() })
     }
 
-    /// Returns the meaning of an unknown field that probably stands for `field`, with a fix that
-    /// renames it and converts its value if necessary. There is no fix if the value does not suit
-    /// `field`, or if it must be converted but stands in a `--set` argument.
+    /// Returns the meaning of an unknown field that probably stands for `field`. Its fix renames
+    /// the field and, if necessary, converts the value. There is no fix if the value does not suit
+    /// `field`, or if the value must be converted but stands in a `--set` argument.
     fn renamed(
         &mut self,
         block: &LoweredBlock<'s>,
@@ -284,7 +284,8 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Evaluates a value, but reports only its undefined names.
+    /// Evaluates a value, but reports only its undefined names. Returns `None` if the value has
+    /// errors.
     fn evaluate_quietly(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
         if let ValueKind::Name(name) = value.kind {
             // A name that is neither defined nor a colour may be the name of a sampling method. The
@@ -364,8 +365,9 @@ impl<'s> Lowering<'s> {
         tried.iter().filter(|problem| problem.is_error()).count()
     }
 
-    /// Returns the text of `fields`, each with one element of the list `value`, and whether writing
-    /// it is safe. Returns `None` if an element does not fit its field.
+    /// Distributes the elements of the list `value` among `fields`. Returns the text of these
+    /// fields with their values, and whether writing it is safe. Returns `None` if `value` is not a
+    /// list with one element for each field, or if an element does not fit its field.
     fn spread(
         &mut self,
         block: &LoweredBlock<'s>,
@@ -417,7 +419,7 @@ impl Meant {
         self
     }
 
-    /// Joins two possible meanings, with the fixes of both.
+    /// Joins two possible meanings of an unknown word, with the fixes of both.
     fn or(mut self, other: Self) -> Self {
         self.shown += &format!(" or {}", other.shown);
         self.fields.extend(other.fields);

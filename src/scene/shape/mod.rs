@@ -158,9 +158,9 @@ impl Shape {
         for_each_kind!(self, own => own.bounding_sphere())
     }
 
-    /// Returns the greatest of the shape's lengths, such as a radius, and of the absolute
-    /// coordinates of its centre or vertices relative to `from`. For a checkerboard, this is its
-    /// vertical distance from `from`.
+    /// Returns the greatest of two kinds of lengths: the shape's own lengths, such as a radius, and
+    /// the distances of its centre or vertices from the point `from` along each axis. For a
+    /// checkerboard, returns its vertical distance from `from`.
     pub fn greatest_length(&self, from: DVec3) -> f64 {
         for_each_kind!(self, own => own.greatest_length(from))
     }
@@ -173,8 +173,8 @@ impl Shape {
         row.field_names().filter_map(value)
     }
 
-    /// Returns a mutable reference to the field `name`. For a box, `center` and `size` are not
-    /// available, because they are computed from the corners.
+    /// Returns a mutable reference to the field `name`. Returns `None` if the shape has no such
+    /// field, and for the `center` and `size` of a box, because they are computed from the corners.
     pub(super) fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
         for_each_kind!(self, own => own.field_mut(name))
     }
@@ -206,7 +206,7 @@ mod tests {
         source::{Source, Sources},
     };
 
-    /// Returns lists of fields for which a block of the kind `row` can be written. Fields of
+    /// Returns lists of fields that together make a valid block of the kind `row`. Fields of
     /// different alternatives of a [`Choice`](crate::schema::Choice) exclude each other, so they
     /// are in different lists. Each field is in at least one list.
     fn ways(row: &'static BlockRow) -> impl Iterator<Item = Vec<&'static FieldRow>> {

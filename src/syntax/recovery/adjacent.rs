@@ -22,8 +22,9 @@ impl<'s> Recovery<'_, 's> {
         texts.collect::<Vec<_>>().join(", ")
     }
 
-    /// Reports `values` if there are several, since one is expected. Returns the value that they
-    /// probably mean, or a value marked as bad if this is uncertain.
+    /// Reports several values that stand where one is expected. Returns the value that they
+    /// probably mean, or a value marked as bad if this is uncertain. A single value is returned as
+    /// it is.
     pub(super) fn adjacent_values(
         &mut self,
         mut values: Vec<Value<'s>>,

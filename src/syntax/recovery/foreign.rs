@@ -173,9 +173,8 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Skips comments of other languages, and records their first characters, such as `#`, for a
-    /// report. A comment ends at the end of its line. If the line contains the `{` of a block that
-    /// is still open at the comment, any `}` at the end of the line closes the block and is not
-    /// skipped.
+    /// report. A comment ends at the end of its line. A `}` at the end of the line is not skipped
+    /// if it closes a block that was opened on this line, as in `camera { # the eye }`.
     pub(super) fn comments(&mut self, place: CommentPosition) {
         while self.starts_comment(place) {
             let start = self.here().start;

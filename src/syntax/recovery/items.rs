@@ -16,9 +16,9 @@ use crate::{
 /// Words that are surely not an object's name if they stand before a kind, as in `a sphere {`.
 const NO_NAMES: &str = "a an the my new add create draw make object";
 
-/// Maximum number of tokens, from the start of a line, among which the `{` after the head of a
-/// block is searched. A `{` further on is not found. Heads are shorter than this; the limit bounds
-/// the time for a very long line.
+/// Maximum number of tokens, counted from the start of a line, that are searched for the `{` after
+/// the head of a block. A `{` further on is not found. Heads are shorter than this; the limit
+/// bounds the time for a very long line.
 const LINE_TOKENS: usize = 24;
 
 impl<'s> Recovery<'_, 's> {
@@ -269,8 +269,8 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Skips to the next line that starts an item or a statement of another language. If a `{`
-    /// comes before that line, skips its block and stops after it. If a `}` comes first, stops
-    /// after the `}`.
+    /// comes before that line, skips to the end of the block that it opens. If a `}` comes first,
+    /// skips to the end of this `}`.
     fn skip_lines(&mut self) {
         while self.kind(0) != TokenKind::End {
             if self.is_on_new_line(0) {
@@ -309,7 +309,7 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::STRAY_CLOSING, span, &[sign], fix);
     }
 
-    /// Reports a `}` that was never opened, together with any that follow it directly.
+    /// Reports a `}` that was never opened, together with further `}` directly after it.
     fn stray_brace(&mut self) {
         let first = self.bump();
         let mut all = first;

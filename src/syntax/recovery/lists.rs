@@ -9,7 +9,7 @@ use crate::{
     schema::{self, Type},
     source::Span,
     syntax::{
-        NESTING_LIMIT, messages as say,
+        messages as say,
         problem::{replace, shorten},
         tokens::TokenKind,
         tree::{Element, Name, Value, ValueKind, bad, call, group},
@@ -82,8 +82,9 @@ impl<'s> Recovery<'_, 's> {
         if self.words.is_foreign_function(function.text) && self.problems.len() == problems_before {
             return self.foreign_function(function, list);
         }
-        // If a call has several problems and contains a `%`, as in `rgb(100%, 0%, 0%)`, one report
-        // about the `%` replaces them. If the function is unknown, this report is omitted.
+        // If a call has several problems and contains a `%`, as in `rgb(100%, 0%, 0%)`, these
+        // problems are replaced by one report about the `%`. For an unknown function, they are only
+        // removed, because the function itself will be reported.
         let is_known = schema::function(function.text).is_some();
         if self.problems.len() > problems_before + 1 && self.written(parentheses).contains('%') {
             self.problems.truncate(problems_before);
@@ -105,8 +106,8 @@ impl<'s> Recovery<'_, 's> {
         self.words.is_foreign_function(self.word(0)) && self.is(1, "(")
     }
 
-    /// Reports `vec3(1, 2, 3)` or `rgba(255, 0, 0, 1)`, whose arguments were read already. Returns
-    /// a value marked as bad.
+    /// Reports a call of another language's function, such as `vec3(1, 2, 3)`. The arguments were
+    /// read already. Returns a value marked as bad.
     fn foreign_function(&mut self, name: Name<'s>, list: List<'s>) -> Value<'s> {
         let span = name.span.to(list.span);
         let mut values: Vec<Value<'s>> = list.elements.into_iter().map(|e| e.value).collect();
@@ -137,7 +138,7 @@ impl<'s> Recovery<'_, 's> {
         parts: Option<Type>,
         count: &PartCount,
     ) -> Option<List<'s>> {
-        if self.depth >= NESTING_LIMIT {
+        if self.depth >= self.limit {
             self.pass_over();
             return None;
         }
@@ -261,8 +262,8 @@ impl<'s> Recovery<'_, 's> {
         fits.then_some(list)
     }
 
-    /// Reports semicolons in place of commas. `is_plain` says that the list has no other mistakes.
-    /// If it has some, there is no fix.
+    /// Reports semicolons in place of commas. There is a fix only if the list has no other mistakes
+    /// (`is_plain`).
     fn semicolons(&mut self, signs: &[Span], is_plain: bool) {
         if let Some(&first) = signs.first() {
             let commas = signs.iter().map(|sign| Edit::new(*sign, ","));

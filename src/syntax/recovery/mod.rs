@@ -29,7 +29,7 @@ mod values;
 use std::collections::{BTreeMap, VecDeque};
 
 use super::{
-    Parsed, messages as say,
+    NESTING_LIMIT, Parsed, messages as say,
     problem::{Message, merge_sign_reports, replace, shorten},
     scan::Scan,
     tokens::{Lexer, Token, TokenKind},
@@ -57,11 +57,11 @@ pub struct Recovery<'w, 's> {
     pub(super) items: Vec<Item<'s>>,
     /// The problems reported so far.
     pub(super) problems: Problems,
-    /// Whether a mistake hides the rest of the text.
+    /// Whether a mistake, such as an unclosed comment, hides the rest of the text.
     is_cut: bool,
-    /// Whether error recovery read an item that follows the grammar but was probably meant
-    /// otherwise, and found no better explanation of it. If so, the node that pest, the generated
-    /// parser, made was kept.
+    /// Whether the text contains an item that follows the grammar but looks wrong, and for which
+    /// error recovery found no better reading. Such an item keeps the node that pest, the generated
+    /// parser, made of it.
     is_doubtful: bool,
     /// Offset after the last item that error recovery read.
     pub(super) read_to: usize,
@@ -76,9 +76,12 @@ pub struct Recovery<'w, 's> {
     lists: usize,
     /// Number of blocks around the item that is read.
     blocks: usize,
-    /// Whether the value that is read nests deeper than [`NESTING_LIMIT`](super::NESTING_LIMIT), so
-    /// that the rest of it was skipped.
+    /// Whether the value that is read nests deeper than `limit`, so that the rest was skipped.
     too_deep: bool,
+    /// Maximum depth of nested parentheses, signs and calls in a value.
+    pub(super) limit: usize,
+    /// Whether any value so far nests deeper than `limit`.
+    pub(super) has_passed_over: bool,
 }
 
 /// What the parser is reading: the block, if any, and the field of that block.
@@ -123,6 +126,8 @@ impl<'w, 's> Recovery<'w, 's> {
             lists: 0,
             blocks: 0,
             too_deep: false,
+            limit: NESTING_LIMIT,
+            has_passed_over: false,
         }
     }
 
@@ -146,10 +151,10 @@ impl<'w, 's> Recovery<'w, 's> {
     }
 
     /// Reads the item at `start` again, which follows the grammar but may have been meant
-    /// otherwise. Returns the item's end if the new reading is better. A block is better if all of
-    /// its fields are known. A definition is better if mistakes were found, and each of them is a
-    /// comment or a function of another language. If the new reading is not better, restores the
-    /// items and problems and returns `None`.
+    /// otherwise. Returns the item's end if the new reading is better. A new reading of a block is
+    /// better if all fields are known. A new reading of a definition is better if it finds at least
+    /// one mistake, and if all mistakes are comments or functions of another language. If the new
+    /// reading is not better, restores the items and problems and returns `None`.
     pub fn item_as_meant(&mut self, start: usize) -> Option<usize> {
         let (items, problems, read_to) = (self.items.len(), self.problems.len(), self.read_to);
         let slips = |this: &Self| this.context.signs.values().map(Vec::len).sum::<usize>();

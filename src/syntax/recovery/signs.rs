@@ -11,8 +11,7 @@ use crate::{
 
 impl Recovery<'_, '_> {
     /// Reads a `,` or `;` between fields or items, and records it as needless. If a value follows,
-    /// the sign may have been meant to continue a list, so the reports of the recorded signs get no
-    /// fix.
+    /// the author may have wanted to continue a list. No recorded separator then gets a fix.
     pub(super) fn separator(&mut self) {
         let sign = self.bump();
         self.note_sign(sign);
@@ -32,8 +31,9 @@ impl Recovery<'_, '_> {
         }
     }
 
-    /// Reports the recorded separators and comment starts. If a problem from the index `first` on
-    /// has no fix, the purpose of the separators is uncertain, so they get no fix either.
+    /// Reports the recorded separators, and the recorded characters that start comments in other
+    /// languages. Gives them no fix if a problem with an index of at least `first` has none,
+    /// because the purpose of a separator is then uncertain.
     pub(super) fn report_signs(&mut self, first: usize) {
         let since = self.problems.get(first..).unwrap_or_default();
         let is_doubtful = since.iter().any(|problem| problem.fixes.is_empty())

@@ -301,7 +301,7 @@ impl<'s> Recovery<'_, 's> {
         if !SUM.contains(&written) {
             return self.operand();
         }
-        if self.depth >= NESTING_LIMIT {
+        if self.depth >= self.limit {
             return self.pass_over();
         }
         let (sign, problems_before) = (self.bump(), self.problems.len());
@@ -420,6 +420,7 @@ impl<'s> Recovery<'_, 's> {
         let first = self.here();
         self.report(&say::TOO_DEEP, first, &[&NESTING_LIMIT.to_string()], None);
         self.too_deep = true;
+        self.has_passed_over = true;
         let mut open = self.lists;
         while !matches!(self.word(0), "" | "{" | "}" | "let") && (open > 0 || !self.is_boundary()) {
             match self.word(0) {

@@ -1,5 +1,6 @@
-//! Compares the doubtful area of a conic with counts of points. The doubtful area is the part of a
-//! pixel in which the conic's error leaves open on which side of the conic a point lies.
+//! Compares the doubtful area of a conic with an estimate: the number of grid points that lie in
+//! this area. The doubtful area is the part of a pixel in which the conic's error leaves open on
+//! which side of the conic a point lies.
 
 use std::cell::RefCell;
 

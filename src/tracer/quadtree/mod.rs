@@ -41,10 +41,10 @@ impl Quadtree {
         Self { grid, tree }
     }
 
-    /// Calls `visit` with the objects that a ray may hit, from the largest cell down, until `visit`
-    /// fails. `visit` returns the inverse depth of the nearest crossing so far, rounded down;
-    /// objects entirely behind this crossing are skipped. Returns `None` if the direction is
-    /// outside of the window.
+    /// Calls `visit` with the objects that a ray may hit, from the largest cell down. `visit`
+    /// returns the inverse depth of the nearest crossing so far, rounded down; objects entirely
+    /// behind this crossing are skipped. If `visit` fails, stops and returns its error. Returns
+    /// `None` if the direction is outside of the window.
     #[inline]
     pub fn visit<E>(
         &self,
@@ -80,11 +80,11 @@ impl Quadtree {
         Some(items)
     }
 
-    /// Calls `visit` with the objects of `nearby` that a ray may hit, the nearest first, until
-    /// `visit` fails. `visit` returns the inverse depth of the nearest crossing so far, rounded
-    /// down; objects entirely behind this crossing are skipped. `nearby` is the result of
-    /// [`nearby`](Self::nearby) for a rectangle that contains the ray. Returns `None` if the
-    /// direction is outside of the window.
+    /// Calls `visit` with the objects of `nearby` that a ray may hit, the nearest first. If `visit`
+    /// fails, stops and returns its error. `visit` returns the inverse depth of the nearest
+    /// crossing so far, rounded down; objects entirely behind this crossing are skipped. `nearby`
+    /// is the result of [`nearby`](Self::nearby) for a rectangle that contains the ray. Returns
+    /// `None` if the direction is outside of the window.
     #[inline]
     pub fn visit_nearby<E>(
         &self,

@@ -11,9 +11,9 @@ use super::{
 };
 
 impl Cells {
-    /// Calls `visit` with the objects that the ray through a point may hit, until `visit` fails.
-    /// `visit` returns the inverse depth of the nearest crossing so far, rounded down; objects
-    /// entirely behind this crossing are skipped.
+    /// Calls `visit` with the objects that the ray through a point may hit. If `visit` fails, stops
+    /// and returns its error. `visit` returns the inverse depth of the nearest crossing so far,
+    /// rounded down; objects entirely behind this crossing are skipped.
     #[inline]
     pub(super) fn visit<E>(
         &self,
@@ -41,7 +41,8 @@ impl Cells {
 
 /// Calls `visit` with the objects of one list that the ray through a point may hit, the nearest
 /// first. `visit` returns the inverse depth of the nearest crossing so far, rounded down, which is
-/// stored in `hidden`. Stops at the first object that is entirely behind this crossing.
+/// stored in `hidden`. Stops at the first object that is entirely behind this crossing. If `visit`
+/// fails, stops and returns its error.
 #[inline]
 pub(super) fn visit_list<E>(
     list: &[BoundedObject],

@@ -1,7 +1,7 @@
 //! The rectangle query: the objects that rays through a rectangle may hit.
 //!
 //! In: a rectangle of the grid. Out: the objects whose bounds intersect the rectangle, in file
-//! order, except those behind an object that fills it.
+//! order, except those behind an object that fills the rectangle.
 
 use super::{
     grid::{BoundedObject, Nearness, Rectangle},

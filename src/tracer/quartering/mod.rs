@@ -78,8 +78,8 @@ pub enum PicturePart<'a> {
         /// too uncertain for sampling.
         checks: Option<&'a CheckerPixel>,
     },
-    /// An area with so many candidates that finding where each is seen costs more than it saves.
-    /// Its samples are traced one by one.
+    /// An area with so many candidates that it takes longer to find where each is seen than to
+    /// trace the samples one by one. So its samples are traced one by one.
     Crowded {
         /// The part's area.
         area: Area,

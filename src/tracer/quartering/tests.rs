@@ -66,7 +66,8 @@ fn of_layers_only_those_that_are_seen_are_candidates() {
                     let few = match part {
                         PicturePart::OneColor { .. } => 0,
                         // All boards meet at the horizon, which lies between these two rows of
-                        // pixels. Their pixels may have many candidates and are not checked.
+                        // pixels. The pixels of these rows may have many candidates and are not
+                        // checked.
                         PicturePart::Pixel { y: 31 | 32, .. } => 0,
                         PicturePart::Pixel { candidates, .. } => candidates.len(),
                         PicturePart::Crowded { .. } => usize::MAX,
@@ -105,9 +106,9 @@ fn what_a_wall_hides_is_not_found() {
     }
 }
 
-/// Checks that testing only the objects that `nearby` finds gives each sample point the same colour
-/// as a search of the quadtree does. The scene is crowded with objects. The test also requires that
-/// some pixels are recognized as single-coloured.
+/// Checks that each sample point of a crowded scene gets the same colour whether only the objects
+/// that `nearby` finds are tested, or the quadtree is searched. The test also requires that some
+/// pixels are recognized as single-coloured.
 #[test]
 fn of_a_crowd_the_objects_nearby_are_enough() {
     let mut shapes = thousand_spheres(9.0);

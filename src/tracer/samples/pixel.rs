@@ -64,8 +64,8 @@ pub(super) struct PixelSurface {
     /// Start and end of the object's boundary lines in [`PreparedPixel::lines`]. The linear form of
     /// each line is ≥ 0 for rays that hit the object.
     pub(super) edges: [usize; 2],
-    /// The silhouette of a sphere, if it may cross the pixel. The form is > 0 for rays that hit the
-    /// sphere.
+    /// The silhouette of a sphere, as a form that is > 0 for rays that hit the sphere. `None` if
+    /// the object is not a sphere, or if the silhouette does not cross the pixel.
     pub(super) conic: Option<LocalQuadratic>,
     pub(super) pattern: ColorPattern,
     pub(super) depth: Depth,
@@ -80,8 +80,8 @@ pub(super) enum ColorPattern {
     /// on the line. A point shows the first colour if the product of the forms' values is positive,
     /// and the second colour if it is negative. If `odd` is set, the two colours are exchanged.
     ///
-    /// The forms are in [`PreparedPixel::lines`], from the end of the surface's `edges` up to,
-    /// but not including, the index `end`.
+    /// The forms are a part of [`PreparedPixel::lines`]. The part starts at the end of the
+    /// surface's `edges`; `end` is the index after its last form.
     Lines { end: usize, odd: bool },
     /// The squares of a checkerboard. For each sample, a division computes the square that it hits.
     Squares(CheckerForms),
@@ -107,8 +107,10 @@ pub(super) enum Depth {
     },
 }
 
-/// Values of the samples of a chunk, with one array for each quantity.
+/// Values of the samples of a chunk, with one array for each quantity. They are aligned, because
+/// numbers that are stored across two cache lines are loaded late.
 #[derive(Debug)]
+#[repr(align(64))]
 pub(super) struct Lanes {
     /// Code, for each sample, of the colour of the nearest surface found so far.
     pub(super) seen: [f64; CHUNK_SAMPLES],

@@ -21,9 +21,10 @@ use super::{
 };
 use crate::{area::Area, math::UP};
 
-/// Maximum error bound of a checkerboard's linear forms in a pixel. If a bound is larger, the
-/// pixel's samples are traced one by one, because products of the forms' factors with indices of
-/// squares, which are below 2^53, might overflow.
+/// Maximum error bound of a checkerboard's linear forms in a pixel. The bound contains the rounding
+/// errors of the forms' factors, which are therefore at most 2^51 times the bound. So with this
+/// limit, products of factors with the indices of squares, which are below 2^53, cannot overflow.
+/// If a bound is larger, the pixel's samples are traced one by one.
 const MAX_ERROR: f64 = 1e250;
 
 /// Maximum number of lines between squares in a pixel for which a sample's colour is found by
@@ -46,7 +47,7 @@ impl PreparedPixel {
         self.order(world, &pixel)
     }
 
-    /// Prepares a pixel that shows only a checkerboard.
+    /// Prepares a pixel that shows only a checkerboard. Fails if a form has overflowed.
     pub(super) fn prepare_checks(&mut self, checks: &CheckerPixel) -> Result<(), Hard> {
         self.clear();
         let mut surface = PixelSurface::new(0, 0);
@@ -63,7 +64,8 @@ impl PreparedPixel {
     }
 
     /// Adds the candidate with the index `index` as a surface, with its boundaries and colours as
-    /// forms. Adds nothing if the candidate is certainly not seen in the pixel.
+    /// forms. Adds nothing if the candidate is certainly not seen in the pixel. Fails in rare cases
+    /// for which there is no formula, and if a form has overflowed.
     fn add_surface(&mut self, world: &World, pixel: &Patch, index: usize) -> Result<(), Hard> {
         let candidate = self.candidates[index];
         let object = &*f64::object(&world.geometry, candidate.object);
@@ -201,7 +203,7 @@ impl PreparedPixel {
     /// do not cross the pixel. Returns a pattern that finds a sample's colour from the signs of the
     /// lines' forms. If there are more than [`MAX_LINES`] lines, adds none, and returns a pattern
     /// that computes by division which square a sample hits. `x0` to `x1` and `z0` to `z1` are the
-    /// ranges of the squares in the pixel.
+    /// ranges of the squares in the pixel. Fails if a form has overflowed.
     fn lines(
         &mut self,
         squares: &CheckerForms,
@@ -218,17 +220,17 @@ impl PreparedPixel {
             while k <= last {
                 let line = across.less(k, below);
                 // `line` is a form that is zero on the line with the number k between squares: a
-                // positive multiple of x/square − k, or of z/square − k. If it is positive in the
-                // whole pixel, the first of the pixel's squares lies beyond this line, so `odd`,
-                // the parity of this square, is negated.
+                // positive multiple of x/square − k, or of z/square − k. If the form is positive in
+                // the whole pixel, the first of the pixel's squares lies beyond this line. So
+                // `odd`, the parity of this square, is negated.
                 match line.range().side() {
                     Side::Above => odd = !odd,
                     Side::Below => {}
                     Side::Both => {
                         self.lines.push(line.line());
-                        // From now on, `odd` is the parity of the square in which the forms of all
-                        // added lines are positive. This square lies beyond the line that is added
-                        // now, so `odd` is negated.
+                        // The line crosses the pixel. `odd` becomes the parity of the square in
+                        // which the forms of all added lines, including this one, are positive.
+                        // This square lies beyond the line, so `odd` is negated.
                         odd = !odd;
                     }
                     Side::Unknown => return Err(Hard),
@@ -245,7 +247,8 @@ impl PreparedPixel {
     }
 
     /// Sorts the surfaces by depth, from back to front. If their depths overlap, also prepares the
-    /// forms of their depths, which are then compared at every sample.
+    /// forms of their depths, which are then compared at every sample. Fails if a sphere has no
+    /// accurate formula for the depth, or if an error bound has overflowed.
     fn order(&mut self, world: &World, pixel: &Patch) -> Result<(), Hard> {
         let candidates = &self.candidates;
         let range = |surface: &PixelSurface| candidates[surface.index].inverse_depth;

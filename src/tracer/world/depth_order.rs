@@ -51,8 +51,8 @@ pub(super) fn order_to_clip<T: Real>(
         return order;
     }
     // The test below asks whether the surface lies in the near or in the far plane, not in which of
-    // the two. This is enough: if the surface lay in the other plane than `clip`, the order would
-    // be certain here, unless the two planes are equal.
+    // the two. This is enough: if the surface lay only in the plane that is not `clip`, the order
+    // would already be certain.
     let at = (index, crossing.part);
     // The numbers of two different planes may agree in hundreds of binary digits, so that only the
     // highest precision distinguishes the planes. The highest precision is used last, because

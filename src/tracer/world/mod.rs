@@ -52,7 +52,7 @@ pub struct World {
 pub(super) struct VisibleCrossing {
     pub(super) object: usize,
     /// Whether the ray's second crossing with the object is seen, because the near plane cuts off
-    /// the first.
+    /// the first crossing.
     pub(super) second: bool,
     /// Whether the crossing shows a checkerboard's second colour.
     odd: bool,
@@ -97,7 +97,8 @@ impl World {
     ///
     /// # Panics
     ///
-    /// If a condition is broken, this function may panic. If it does not, the picture is wrong.
+    /// If a condition is broken, this function may panic. If this function does not panic, the
+    /// picture is wrong.
     pub fn new(scene: &Scene) -> Self {
         Self::build(scene, Faces::Seen, reach(scene), &cancel::NEVER)
     }
@@ -241,11 +242,11 @@ impl World {
         let among = || among.clone();
         let (mut seen, is_sure) = first_certain!(&self.geometry, point, |r| self.seen(r, among()));
         if !is_sure {
-            // The lower precisions were uncertain, so the highest has decided. It also counts a hit
-            // if the ray cannot be distinguished from one that hits the object, even if the ray is
-            // outside of the object's bounds in the quadtree. Some callers pass only objects whose
-            // bounds contain the ray, and others pass all objects. To give all callers the same
-            // answer, objects whose bounds do not contain the ray are left out.
+            // The lower precisions were uncertain, so the highest precision has decided. It treats
+            // a ray that cannot be distinguished from one that hits an object as a hit, even if the
+            // ray is outside of the object's bounds in the quadtree. Some callers pass only objects
+            // whose bounds contain the ray, and others pass all objects. To give all callers the
+            // same answer, objects whose bounds do not contain the ray are left out.
             let near = self.candidates(point);
             let is_near = |object: &usize| near.binary_search(object).is_ok();
             if !among().all(|object| is_near(&object)) {
@@ -295,8 +296,8 @@ impl World {
     }
 
     /// Returns the crossing that is seen at a point. Tests the objects `nearby` if they are given,
-    /// otherwise those that the quadtree lists for the ray. Fails if rounding errors leave a
-    /// decision uncertain in `f64`.
+    /// otherwise those that the quadtree lists for the ray. Returns `None` if the ray hits no
+    /// object. Fails if rounding errors leave a decision uncertain in `f64`.
     #[inline]
     fn seen_fast(
         &self,
@@ -346,7 +347,8 @@ impl World {
 
     /// Returns the nearest crossing of the ray with the objects `among`, which are in file order.
     /// Only crossings between the near and the far plane are considered. If several crossings have
-    /// equal depths, returns that of the first object.
+    /// equal depths, returns that of the first object. Returns `None` if there is no crossing, and
+    /// a [`Doubt`] if rounding errors leave a decision uncertain.
     #[inline]
     pub(super) fn seen<T: Precision>(
         &self,
@@ -358,6 +360,7 @@ impl World {
     }
 
     /// Completes the nearest crossing: determines which of the object's two colours the ray sees.
+    /// Returns a [`Doubt`] if rounding errors leave this uncertain.
     #[inline]
     fn with_color<T: Precision>(
         &self,
@@ -390,7 +393,7 @@ impl World {
 
     /// Tests an object. If its crossing is nearer than `nearest`, or is as near and belongs to an
     /// object earlier in the file, stores the crossing in `nearest` and returns `true`. Otherwise
-    /// returns `false`.
+    /// returns `false`. Returns a [`Doubt`] if rounding errors leave the comparison uncertain.
     #[inline]
     fn meet<T: Precision>(
         &self,
@@ -426,7 +429,8 @@ impl World {
 
     /// Returns the ray's nearest crossing with an object, and whether it is the second crossing.
     /// Only crossings between the near and the far plane are considered. `first` is the object's
-    /// first crossing. Returns `None` if neither crossing lies between the planes.
+    /// first crossing. Returns `None` if neither crossing lies between the planes, and a [`Doubt`]
+    /// if rounding errors leave this uncertain.
     #[inline]
     fn clip<T: Precision>(
         &self,

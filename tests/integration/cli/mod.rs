@@ -40,8 +40,8 @@ fn ctrl_c_keeps_the_hard_cases_measured_so_far() {
     assert!((1..1_000_000_000).contains(&asked), "{asked}");
     let people = interrupted(&mut folder.command(line), 1500).errors;
     assert!(people.contains("S1a  rays that nearly touch a sphere"));
-    // The expected message states how many inputs all cases would have had together. The table of
-    // the interrupted run may lack some cases, so the number of cases is taken from a complete run.
+    // The expected message states the number of inputs of all cases together. The table of the
+    // interrupted run may lack some cases, so the number of cases is taken from a complete run.
     let all = folder
         .done("report --numerics --inputs 1 --format json")
         .json();

@@ -102,8 +102,9 @@ pub fn dragged(text: &str, moved: &Drag<'_>) -> Result<String, String> {
 }
 
 /// Applies a drag to the text `start` followed by `text`, and returns the part of the result after
-/// `start`. `words` are the handle, the coordinates of one or two points, and the axis or plane of
-/// the movement.
+/// `start`. `words` begins with the handle. For an object, the point to which the handle is dragged
+/// follows, and perhaps the axis or plane of the movement. For the camera (`object` is `None`), two
+/// points of the pointer follow: the first and the last.
 fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> String {
     let words: Vec<&str> = words.split(' ').collect();
     let point = |at: usize| dvec2(words[at].parse().unwrap(), words[at + 1].parse().unwrap());
@@ -126,9 +127,9 @@ fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> St
     }
 }
 
-/// Returns the answer to the query `question` about `text`. If the query is about a part of the
-/// text, brackets enclose this part. `other` is the query's second argument, such as the label of a
-/// completion; it is empty if there is none.
+/// Returns the answer to the query `question`, such as `hover`, about `text`. The query is about
+/// the place of `$0` in the text, or about a part of the text in brackets. `other` is an argument
+/// of the query, such as the label of a completion; it is empty if there is none.
 fn answer(question: &str, text: &str, other: &str) -> String {
     let at = text.find(['$', '[']).unwrap_or_default();
     let end = text.find(']').map_or(at, |end| end - 1);

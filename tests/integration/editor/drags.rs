@@ -195,8 +195,8 @@ proptest! {
         let Ok(changed) = dragged(&text, &moved) else { return Ok(()) };
         let mut after = read(&changed);
         prop_assert_eq!(after.objects.len(), before.objects.len());
-        // The drag may have changed a name that the camera uses. The handle must follow the pointer
-        // as seen by the camera before the drag, so this camera is used.
+        // The drag may have changed a `let` whose value the camera uses, too. The handle must
+        // follow the pointer as seen by the camera before the drag, so this camera is used.
         after.camera = before.camera;
         let place = handle_position(&after, handle, &before);
         let found = project(&after, place);

@@ -65,7 +65,8 @@ fn seen(scene: &Scene, observer: &Observer, point: DVec3) -> DVec2 {
     DVec2::new(width, height) / 2.0 + across * scale
 }
 
-/// Returns the place in space of a handle of the camera, from the data of `pinhole inspect`.
+/// Returns the position of a handle of the camera in space, computed from the camera data of
+/// `pinhole inspect`.
 fn place(scene: &Scene, handle: &str) -> DVec3 {
     let Camera { view, up, .. } = scene.camera;
     let CameraFacts {
@@ -128,7 +129,8 @@ fn is_within(point: DVec2) -> bool {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// The chosen view shows the eye, the corners of the window and the ball, from any side.
+    /// The view that the program chooses shows the eye, the corners of the window and the sphere,
+    /// from any direction.
     #[test]
     fn the_chosen_view_shows_eye_window_and_objects(
         text in any_scene(), from in prop_oneof![Just(None), uniform3(-1.0..1.0).prop_map(Some)],
@@ -147,8 +149,9 @@ proptest! {
         }
     }
 
-    /// Each handle is drawn where the geometry has it. Dragged, it appears at the pointer, or as
-    /// near as its line allows; the other fields of the camera keep their values.
+    /// Each handle is drawn at its geometric position. After a drag, it is at the pointer, or as
+    /// near to the pointer as the line on which it moves allows. The other fields of the camera
+    /// keep their values.
     #[test]
     fn a_handle_of_the_camera_follows_the_pointer_and_changes_its_field_alone(
         text in any_scene(), which in 0..7usize, by in uniform2(-90.0..90.0), step in prop_oneof![Just(None), Just(Some(8.0))],
@@ -178,7 +181,8 @@ proptest! {
         prop_assert_eq!(after.camera, expected, "{}: {}", handle, changed);
         let found = seen(&after, &observer, place(&after, handle));
         let tolerance = 0.5 + step.unwrap_or(0.0) + 1e-6;
-        // The direction in the picture in which the handle moves if its number grows.
+        // `towards` is the direction in space in which the handle moves if the number that it
+        // changes grows.
         let place = place(&before, handle);
         let own = facts(&before);
         let towards = match handle {
@@ -189,8 +193,8 @@ proptest! {
             "d" => -own.w,
             "view_height" => own.v,
             "near" | "far" => -own.w - own.v * (own.view_height / (2.0 * own.d)),
-            // The tip of `up` moves on a sphere, and an angle's handle along the axis. Where the
-            // angle is drawn is tested below.
+            // The handle `up` moves on a sphere, and the handle of an angle moves only along the
+            // axis, so neither can reach every pointer. The handles of angles are tested below.
             _ => return Ok(()),
         };
         let moved = seen(&before, &observer, place + towards * 1e-4) - seen(&before, &observer, place);
@@ -215,7 +219,8 @@ proptest! {
     }
 }
 
-/// The edge of the frustum passes through the pointer that drags an angle.
+/// After a drag of the handle of an angle (`fov` or `hfov`), an edge of the frustum passes through
+/// the pointer.
 #[test]
 fn a_dragged_angle_opens_the_frustum_to_the_pointer() {
     for (lens, handle) in [("fov 40deg", "fov"), ("hfov 50deg", "hfov")] {
@@ -243,12 +248,13 @@ fn a_dragged_angle_opens_the_frustum_to_the_pointer() {
     }
 }
 
-/// The window that is drawn away from the eye has a smaller angle: d and the angle agree.
+/// If the window is dragged along the view axis, `d` becomes its new distance from the eye. It
+/// cannot be dragged to the eye or behind it.
 #[test]
 fn a_window_dragged_along_the_axis_changes_d_as_far_as_the_pointer_moved() {
     let text = "camera { eye (0, 0, 0) direction (0, 0, -1) d 2 } sphere { center (0, 0, -9) }";
     let scene = read(text);
-    // From the side, a length along the axis is seen as it is.
+    // The observer looks from the side, so that lengths along the view axis are not foreshortened.
     let observer = observer(&scene, Some(DVec3::X));
     let [one, two] = [2.0, 3.0].map(|d| seen(&scene, &observer, DVec3::NEG_Z * d));
     let changed = dragged(text, &drag(observer, "d", two, Some(4.0))).expect("a drag");
@@ -289,7 +295,8 @@ fn planes_do_not_pass_each_other() {
     );
 }
 
-/// The pointed-at ray goes from the eye through its pixel in the window to what it meets.
+/// The ray through a pixel is drawn from the eye to the surface that the ray hits. Two points of it
+/// are marked: in the window, and on the surface.
 #[test]
 fn the_pointed_ray_ends_at_what_it_meets() {
     let scene = read("camera { eye (0, 1, 8) lookat (0, 1, 0) d 2 } sphere { center (0, 1, 0) }");
@@ -321,7 +328,8 @@ fn the_pointed_ray_ends_at_what_it_meets() {
     assert!(near(ray[0][0], eye) && near(ray[0][1], met), "{ray:?}");
 }
 
-/// Views of extreme scenes are possible cameras, and what is drawn in them is finite.
+/// Even for extreme scenes, the program chooses a view with a valid camera. The lines that are
+/// drawn in the view have finite coordinates.
 #[test]
 fn extreme_scenes_have_a_view() {
     let sphere = "sphere { center (0, 1, 0) }";
@@ -361,7 +369,8 @@ fn extreme_scenes_have_a_view() {
     }
 }
 
-/// The overlays of an observer's scene are those of the same scene with that camera in its text.
+/// Overlays seen by an observer are equal to the overlays of a scene whose own camera has the
+/// observer's numbers.
 #[test]
 fn an_observer_is_the_camera_of_its_numbers() {
     let objects = "box { center (2, 0.75, -0.5) } sphere { center (0, 1, 0) } checkerboard {}";

@@ -72,8 +72,8 @@ fn collect_values(value: &Value<'_>, is_method: bool, words: &mut BTreeMap<Span,
     }
 }
 
-/// The editor derives the kinds of words from the positions of the words. In every text without
-/// syntax errors, the kinds must be those of the tree.
+/// The editor derives each semantic token's kind from the tokens around it. In every text without
+/// syntax errors, it must be the kind that follows from the syntax tree.
 #[test]
 fn semantic_tokens_agree_with_the_syntax_tree() {
     let mut files = 0;

@@ -73,9 +73,9 @@ fn square_indices([place, below]: &[Linear; 2], polygon: &Polygon) -> Vec<IBig> 
     successors(Some(first.clone()), |n| (n < last).then(|| n + IBig::ONE)).collect()
 }
 
-/// Returns the part of a polygon within the row or column `n` of the board's squares. The
-/// coordinate on the board is the quotient `place` / `below`. It is between `n` and `n + 1` in this
-/// part.
+/// Returns the part of a polygon of the view plane that shows the row or column `n` of the board's
+/// squares. In this part, the coordinate on the board, the quotient `place` / `below`, is between
+/// `n` and `n + 1`.
 fn strip([place, below]: &[Linear; 2], n: &IBig, polygon: &Polygon) -> Polygon {
     let line = |n: IBig| -> Linear {
         let n = RBig::from(n);

@@ -93,7 +93,7 @@ fn board_coverage_from_above_matches_the_closed_form() {
 
 #[test]
 fn nearly_vertical_lines_are_known_and_add_up() {
-    // The camera looks at an edge of the box. In the picture, this edge runs along the middle. The
+    // The camera looks at an edge of the box, which appears in the middle of the picture. The
     // silhouette of a sphere crosses this edge.
     for [camera, objects] in rows("
         eye (2, 0, 3) lookat (1, -1, 0) d 0.5 near 3 -> sphere { center (-1, 2, -1.5) radius 1.5 color white } box { min (1, -2, -1) max (2, -1.5, 0) color white }

@@ -237,9 +237,9 @@ fn every_8_and_16_bit_srgb_value_decodes_to_its_linear_light() {
     }
 }
 
-/// The program detects from an EXR's colours whether they were rounded. Channels that are not read,
-/// such as opacity or another layer, must not affect this. One file has 16-bit opacity, the other a
-/// 16-bit green channel.
+/// An EXR file may contain colours that were rounded to 16 bits; the program must detect this.
+/// Channels that are not read, such as opacity, must have no influence. The first file has 16 bits
+/// only for opacity, the second only for green.
 #[test]
 fn unused_exr_channels_do_not_affect_the_detected_rounding() {
     for (file, rounding) in [

@@ -8,8 +8,8 @@ use pinhole::{diagnostic::Applicability, scene};
 use super::diagnostics;
 use crate::scenes::{scenes, sources};
 
-/// Scenes with mistakes, most of them in the heads of blocks. The test removes one delimiter at a
-/// time, and the program must report it as missing in spite of the mistakes.
+/// Scenes with mistakes, most of them before the opening brace of a block. The test removes one
+/// delimiter at a time, and the program must report it as missing in spite of the mistakes.
 const WITH_MISTAKES: [&str; 3] = [
     "\
 camera { eye (0, 3, 8)  lookat (0, 1, 0) }

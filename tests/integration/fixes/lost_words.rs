@@ -159,8 +159,8 @@ fn is_near(new: &str, old: &str) -> bool {
     suggest::nearest(old, [new]).is_some() || suggest::is_among(old, new)
 }
 
-/// Returns whether `new` is the word of the scene language for `old`. `old` is a word of another
-/// program's language, or `new` in another notation.
+/// Returns whether `new` is the scene language's word with the meaning of `old`. `old` is a word of
+/// another program's language, or `new` in another notation.
 fn is_known_for(new: &str, old: &str) -> bool {
     let is_tried = |block: &schema::BlockRow| {
         let field = block.field_tried(old);
@@ -204,10 +204,10 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
     if !lost.is_empty() && !is_listed {
         complaints.push(format!("numbers are lost: {lost:?}"));
     }
-    // A fix may join two successive words, such as `look at`, to a known word, `lookat`. The words
-    // alone do not show whether a fix has done so. Therefore, joining and not joining are both
-    // tried for each of the last four such pairs, and the way with the fewest lost and added names
-    // is used.
+    // A fix may join two successive words, such as `look at`, to a known word, `lookat`. The names
+    // alone do not show whether a fix has done so. Therefore, for each of the last four pairs that
+    // can be joined, the comparison is made with and without joining. The comparison that finds the
+    // fewest lost and added names is used.
     const WAYS: i32 = 1 << 4;
     let read = |of| [true, false].map(|is_two| words(of, is_two).names);
     let (before, after) = (read(text), read(&fixed.text));
@@ -246,9 +246,9 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
 /// `before`.
 ///
 /// A fix may have joined two successive names of `before`, such as `look at`, to a known word,
-/// `lookat`. Each bit of `joins` says whether this is assumed of one such pair. The lowest bit is
-/// for the last pair in the text. If there are more pairs than bits, the sign bit is used for all
-/// further pairs.
+/// `lookat`. Each pair that may have been joined has a bit of `joins`. If the bit is set, the pair
+/// is compared as one name. The lowest bit is for the last pair in the text. If there are more
+/// pairs than bits, the sign bit is used for all further pairs.
 fn unmatched_names(
     before: &[String],
     after: &[String],

@@ -1,4 +1,5 @@
-//! Tests systematic mistakes in correct scenes. Each fix removes its problem and adds no new error.
+//! Puts mistakes into correct scenes in systematic ways, and applies the fixes that are offered.
+//! Each fix must remove the diagnostic that offers it, and must cause no new error.
 
 use std::ops::Range;
 
@@ -44,8 +45,8 @@ fn fixes_of_syntax_slips_remove_their_problem_and_add_no_error() {
             let twice = format!("{token} {token}");
             for slip in ["", &twice, other, &format!("{token} {other}")] {
                 let wrong = format!("{}{slip}{}", &text[..start], &text[end..]);
-                // A field without a value is also a syntax problem. It is left out, because it is
-                // reported by the translation to a scene, not by the parser.
+                // A missing value is also a syntax problem, but the translation to a scene reports
+                // it, not the parser. It is not tested here.
                 trial.apply_fixes(&sources(&wrong), |d, _| {
                     d.is_of_syntax && d.code != "pinhole::missing_value"
                 });

@@ -76,7 +76,7 @@ fn safe_fixes_keep_numbers_and_names_of_mistyped_scenes() {
 #[test]
 fn texts_that_once_lost_content_to_a_fix_keep_it() {
     let texts = [
-        // A comment in the style of another language is not part of the value before it.
+        // A comment in the style of another language, after a value, is not part of this value.
         "triangle { centroid (0, 1, 0)  sides (2, 2, 1)  normal 0 0 1\n#ff8800\n}",
         "sphere { center 0 1 0 // R\n radius 2 }",
         "sphere { center 0 1 0\n-- R\n radius 2 }",

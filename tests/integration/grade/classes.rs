@@ -138,8 +138,8 @@ fn an_export_of_gradescope_is_a_class() {
             "wrong",
             &["photo.heic", LOGO],
         ),
-        // `starter/logo.png` is in every student's folder: it belongs to the assignment's template.
-        // It is therefore not the picture of any student.
+        // Dora has handed in no picture: `starter/logo.png`, which is in every student's folder,
+        // belongs to the assignment's template.
         ("Dora", "export/submission_3", "error", &[LOGO]),
         ("eve@example.org", "export/submission_4", "error", &[]),
     ];

@@ -120,8 +120,9 @@ fn gradescope_gets_a_score_only_where_it_is_known() {
         );
         for test in tests {
             assert_eq!(test["visibility"], "visible");
-            // A mistake may cost more points than the points of a submission divided by the number
-            // of its tests. So points are stated only for the whole submission.
+            // A single mistake may cost more points than an equal share of the submission's points
+            // for each test. So only the points of the whole submission are stated, and none for a
+            // test.
             assert!(test.get("score").is_none() && test.get("max_score").is_none());
         }
         let failed = tests.iter().filter(|test| test["status"] == "failed");

@@ -13,9 +13,9 @@ use super::{
 
 /// A mistake that the program of a student may have.
 pub struct Mistake {
-    /// Answers of `diff` that are accepted for the mistake, separated by bars. An answer is a
-    /// mistake's name, which a part of the mistake's message may follow. It can also be the target
-    /// of a `--set` argument, such as `camera.roll`.
+    /// Answers of `diff` that are accepted for the mistake, separated by bars. An answer is either
+    /// the name of a mistake, or the target of a `--set` argument, such as `camera.roll`. After the
+    /// name of a mistake, a part of its message may follow.
     pub name: &'static str,
     change: Change,
 }
@@ -105,8 +105,8 @@ const OF_THE_CAMERA: &[Mistake] = &[
     row("up_not_orthogonal", |p| p.axes = Axes::UpAsV),
     row("w_not_normalised", |p| p.axes = Axes::LongW),
     row("parallel_rays", |p| p.axes = Axes::Parallel),
-    // If the eye is not subtracted, the picture may show nothing of the scene. Then `nothing_seen`
-    // is the only possible answer.
+    // If the eye is not subtracted, the picture may show nothing of the scene. The only possible
+    // answer of `diff` is then `nothing_seen`.
     row("eye_not_subtracted|nothing_seen", |p| {
         p.axes = Axes::WithoutEye
     }),

@@ -112,9 +112,9 @@ fn wrongly_judged(case: &Case) -> Option<String> {
 
 sampled_and_exhaustive!(random_samples_that_all_pixels_share_are_no_other_mistake);
 
-/// If all pixels have the same few random samples, the mean position of these samples is not the
-/// middle of the pixel. All edges in the picture are shifted by the difference, but the scene
-/// itself is right. So only a shift may be reported.
+/// A program uses the same few random samples in every pixel. Their mean position is not the middle
+/// of the pixel, so all edges in the picture are shifted. The scene itself is right, so `diff` may
+/// report only a shift of the samples.
 fn random_samples_that_all_pixels_share_are_no_other_mistake(effort: Effort) {
     let names = ["figure", "street", "lens"].into_iter();
     let cases = names.flat_map(|name| [4, 8, 16].map(|samples| (name, samples)));

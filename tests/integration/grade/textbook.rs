@@ -93,8 +93,8 @@ pub enum Squares {
     /// The number of the square at the point (x, z) is the sum of x and z, each rounded to the
     /// nearest integer.
     Rounded,
-    /// The number of the square at the point (x, z) is the sum of x, rounded to the nearest
-    /// integer, and ⌊z⌋. So the board is moved by half a square along x.
+    /// The number of the square at the point (x, z) is ⌊x + 1/2⌋ + ⌊z⌋: the program rounds x to the
+    /// nearest integer. So the board is moved by half a square along x.
     Moved,
     /// The number of the square at the point (x, z) is ⌊x + z⌋.
     Sum,
@@ -102,10 +102,9 @@ pub enum Squares {
     Stripes,
     /// The number of the square at the point (x, z) is ⌊z⌋, so that the board has stripes.
     StripesZ,
-    /// The number of the square at the point (x, z) is the sum of x, truncated towards zero, and
-    /// ⌊z⌋.
+    /// The number of the square at the point (x, z) is t + ⌊z⌋; t is x truncated towards zero.
     TruncatedX,
-    /// The number of the square at the point (x, z) is the sum of ⌊x⌋ and of z, rounded to the
+    /// The number of the square at the point (x, z) is ⌊x⌋ + ⌊z + 1/2⌋: the program rounds z to the
     /// nearest integer. So the board is moved by half a square along z.
     MovedZ,
     /// The board is turned by 45 degrees. The number of a square is the sum of its coordinates on

@@ -185,9 +185,9 @@ fn fixes_in_repeated_objects_keep_their_index() {
     assert!(fixes > 50, "{fixes}");
 }
 
-/// A mistake after the `for` of a block does not affect the next block. A repeated checkerboard
-/// causes only one warning. A `let` after a block may have the same name as the block's index; this
-/// holds even if `--set` overrides a value.
+/// Tests three cases. A mistake after the `for` of a block does not affect the next block. A
+/// repeated checkerboard causes only one warning. A `let` after a block may have the same name as
+/// the block's index, even if `--set` overrides a value.
 #[test]
 fn a_repetition_does_not_affect_the_text_around_it() {
     for (text, set, expected) in [

@@ -15,8 +15,8 @@ proptest! {
     }
 }
 
-/// Generates the items of a scene in random order. Their names are often names of blocks, and the
-/// values of definitions end in every possible way.
+/// Generates the items of a scene in random order. Many of their names are also names of blocks.
+/// The definitions' values end in different kinds of tokens, such as a unit or a parenthesis.
 fn shuffled_items() -> impl Strategy<Value = Vec<&'static str>> {
     let items = vec![
         "let a = 2",

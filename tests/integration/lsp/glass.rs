@@ -1,4 +1,5 @@
-//! Tests of what is answered about one pixel: its samples by any method, and the magnifying glass.
+//! Tests of the answers about one pixel: its samples by any method, and the data of the magnifying
+//! glass.
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 use pinhole::{
@@ -50,7 +51,8 @@ fn samples_are_those_of_the_scene_with_that_method_and_count() {
     }
 }
 
-/// The glass says what the exact picture has in the pixel, to the last bit, and what `probe` sees.
+/// The glass reports the same mean colour as the exact picture, to the last bit. It reports the
+/// visible surfaces with the fractions of the pixel that they cover.
 #[test]
 fn the_glass_agrees_with_the_exact_picture_and_with_probe() {
     let scene = read(SCENE);
@@ -60,8 +62,9 @@ fn the_glass_agrees_with_the_exact_picture_and_with_probe() {
         let [x, y] = pixel;
         let found = client.ask("pinhole/glass", json!({ "pixel": pixel }));
         assert_eq!(numbers(&found["mean"]), exact.film.row(y)[x as usize]);
+        assert_eq!(found["method"], scene.sampler.method.name());
         let bound = found["bound"].as_f64().expect("a bound");
-        // The bounds of a picture are rounded up to 32 bits.
+        // A picture stores error bounds as `f32`, rounded up.
         let stored = f64::from(exact.bounds[(y * 48 + x) as usize]);
         assert!(
             bound <= stored && stored <= bound * 1.000_001,
@@ -78,8 +81,8 @@ fn the_glass_agrees_with_the_exact_picture_and_with_probe() {
             (shares.iter().sum::<f64>() - 1.0).abs() <= 1e-9,
             "{shares:?}"
         );
-        // 128 × 128 samples see the same colours, with the same shares but for the samples of the
-        // rows and columns of cells that an edge crosses.
+        // A grid of 128 × 128 samples sees the same colours. Their fractions may differ only by the
+        // samples of the rows and columns of cells that an edge crosses.
         let asked = json!({ "pixel": pixel, "method": "regular", "count": 128 * 128 });
         let many = client.ask("pinhole/samples", asked);
         let colors = many["colors"].as_array().expect("a list");
@@ -97,7 +100,7 @@ fn the_glass_agrees_with_the_exact_picture_and_with_probe() {
             );
         }
     }
-    // What is seen, by name.
+    // Each row has a pixel, and the names of surfaces that are visible in it.
     for (pixel, labels) in [
         ([19, 13], &["Ball", "checkerboard"][..]),
         ([24, 11], &["Ball"]),
@@ -115,7 +118,9 @@ fn the_glass_agrees_with_the_exact_picture_and_with_probe() {
     }
 }
 
-/// The errors of the chart: those of the scene's own seed are those of the picture.
+/// The glass reports the error of each method with the scene's own seed (`own`). It must be the
+/// error of the pixel in the rendered picture. Also tests a lower limit of the typical error over
+/// several seeds.
 #[test]
 fn errors_of_the_own_seed_are_those_of_the_picture() {
     let mut client = LocalClient::with(SCENE);
@@ -149,7 +154,7 @@ fn errors_of_the_own_seed_are_those_of_the_picture() {
             }
         }
     }
-    // In a pixel of one colour, every sample is right.
+    // The last of the `PIXELS` has a single colour, so every sample has the right colour.
     for errors in answers[4]["errors"].as_array().expect("a list") {
         if errors["method"] != "scatter" {
             // A mean of equal numbers may be rounded.

@@ -65,7 +65,8 @@ fn neovim_gets_the_recorded_answers() {
 type Typed = [&'static str; 3];
 
 /// Completions that `CTRL-X CTRL-O` requests, as rows of [`Typed`]. Neovim 0.7 inserts the whole
-/// completion, Neovim 0.11 only its first word. Therefore, only their common start is compared.
+/// completion, Neovim 0.11 only its first word. Therefore, only the beginning of the resulting line
+/// is compared.
 const ASKED: &[Typed] = &[
     ["$0\ncamera {}", "s p h <C-x><C-o>", "sphere"],
     ["$0\ncamera {}", "s <C-x><C-o> menu <C-n> <C-y>", "sphere"],

@@ -50,7 +50,8 @@ fn a_view_answers_what_the_scene_with_that_camera_answers() {
             "{sets}"
         );
     }
-    // The places of the blocks in the two texts differ.
+    // Ranges in the texts are not compared, because the blocks have different positions in the two
+    // texts.
     let without_ranges = |answer: &Value| {
         let mut answer = answer.clone();
         let objects = answer["objects"].as_array_mut().into_iter().flatten();
@@ -85,7 +86,7 @@ fn a_view_answers_what_the_scene_with_that_camera_answers() {
             "{method} {params}"
         );
     }
-    // The scene's own picture is as it was.
+    // A request for a view has not changed the picture by the scene's own camera.
     assert!(shown(&client.ask("pinhole/frame", json!({}))) == rendered(SCENE, ""));
 }
 
@@ -117,7 +118,8 @@ fn a_view_that_is_not_given_is_chosen_and_serves_further_requests() {
         "near 0",
     ];
     assert_eq!(names(&chosen), expected);
-    // From above, the eye appears where its x and z are.
+    // The view is from above, so x points to the right and z downwards. The eye has a larger x and
+    // a larger z than `lookat`.
     let view = json!({ "from": [0, 1, 0.001], "size": [500, 240] });
     let top = client.ask("pinhole/overlays", json!({ "view": view }));
     let at = |label: usize, axis: usize| top["camera"]["handles"][label]["at"][axis].as_f64();
@@ -190,8 +192,9 @@ fn views_that_are_no_cameras_are_refused() {
     }
 }
 
-/// A frame of another view ends the one before; the picture of the scene's own camera goes on, and
-/// a view with fewer samples does not wait for it.
+/// A request for a picture of another view cancels the unfinished picture of the view before. It
+/// does not cancel the picture of the scene's own camera. A picture of another view with few
+/// samples is finished before that picture.
 #[test]
 fn a_frame_of_a_newer_view_takes_the_place_of_an_older_one() {
     let text = SCENE.replace("width 83  height 61", "width 1000  height 1000");

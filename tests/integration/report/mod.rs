@@ -177,7 +177,8 @@ fn the_inner_edges_of_a_box_are_edges_and_no_board() {
     assert!(on_board[0] >= faces[0] && on_board[1] > 0.0, "{on_board:?}");
 }
 
-/// Edges between objects of the same colour are no less edges, and the board's pixels are no fewer.
+/// Spheres of the same colour and spheres of different colours must give the same result: an edge
+/// between two objects is found even if their colours are equal.
 #[test]
 fn colors_of_objects_do_not_change_the_share_of_the_board() {
     let balls = |colors: [&str; 2]| {

@@ -170,9 +170,9 @@ fn numbers(text: &str) -> Vec<f64> {
     words.map(|word| word.parse().unwrap()).collect()
 }
 
-/// Each row has measured points: samples, CPU time and error. After the arrow follow an error and
-/// the expected cost of reaching it: the number of samples, the CPU time, and 1 if these are
-/// extrapolated or 0 if not. If the cost cannot be estimated, only the error follows.
+/// Each row has measured points: samples, CPU time and error. After the arrow, the row has an error
+/// and the expected cost of reaching it. The cost is a number of samples, a CPU time, and 1 if both
+/// are extrapolated, or else 0. If the cost cannot be estimated, it is left out.
 #[test]
 fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
     for [points, expected] in rows("

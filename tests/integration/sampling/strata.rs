@@ -135,8 +135,9 @@ fn halton_is_the_shifted_halton_sequence() {
     let n = 4_u64.pow(4) * 3_u64.pow(3);
     let points = points(Method::Halton, n, 0, [3, 5]);
     let origin = points[0];
-    // Returns how far `offset` is beyond `origin`, in units of 2^−53. If the result would be
-    // negative, the pixel's side is added. The result is rounded down to a whole unit.
+    // Returns how far a coordinate of a point is beyond that of the sequence's first point, in
+    // units of 2^−53, rounded down. The pixel's sides have the length 1. If the result would be
+    // negative, 1 is added.
     let from = |offset: f64, origin: f64| {
         (((fraction(offset) + (1 << 54) - fraction(origin)) & ((1 << 54) - 1)) >> 1) as u64
     };
@@ -184,8 +185,8 @@ fn sobol_keeps_its_strata_beyond_2_to_the_32() {
 
 #[test]
 fn the_largest_counts_keep_their_strata() {
-    // There are too many points to compute all of them. Instead, the points of some consecutive
-    // indices must be in different strata.
+    // There are too many points to compute all of them. Instead, 3000 points with successive
+    // indices, and the last point, must be in different strata.
     for n in [(1 << 53) - 111, 1 << 53, 1 << 33] {
         for method in [Method::NRooks, Method::MultiJittered, Method::Hammersley] {
             let sampling = sampling_with_total(method, n, 4, [1, 1]);

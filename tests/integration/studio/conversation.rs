@@ -1,6 +1,6 @@
 //! Tests of the messages between a page and the host over a WebSocket.
 
-use std::io::Write;
+use std::io::{Cursor, Write};
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use serde_json::{Value, json};
@@ -78,6 +78,60 @@ fn studio_pictures_equal_those_of_render() {
     let huge = SCENE.replace("width 64  height 36", "width 1000000  height 1000000");
     let error = &page.respond("studio/exr", json!({ "text": huge }))["error"];
     assert_eq!(error["code"], -32803, "{error}");
+}
+
+/// The pictures of an animation are those of the text with each value, and last equally long.
+#[test]
+fn an_animation_has_a_picture_for_each_value() {
+    let (_folder, studio) = studio();
+    let (mut page, _) = studio.page();
+    let pixels = |file: &Value| {
+        let file = STANDARD.decode(file["png"].as_str().expect("a file"));
+        let mut reader = png::Decoder::new(Cursor::new(file.unwrap()))
+            .read_info()
+            .unwrap();
+        let count = reader
+            .info()
+            .animation_control()
+            .map_or(1, |it| it.num_frames);
+        let frames = (0..count).map(|_| {
+            let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+            reader.next_frame(&mut pixels).unwrap();
+            let pause = reader.info().frame_control();
+            (pixels, pause.map(|it| (it.delay_num, it.delay_den)))
+        });
+        frames.collect::<Vec<_>>()
+    };
+    let (before, after) = SCENE.split_once("radius 1").unwrap();
+    let before = format!("{before}radius ");
+    let of = |values: &[&str]| {
+        let time = 2000;
+        json!({ "before": before, "values": values, "after": after, "time": time })
+    };
+    let values = ["0.5", "1", "1.5", "1"];
+    let found = pixels(&page.ask("studio/png", of(&values)));
+    assert_eq!(found.len(), 4);
+    for ((frame, pause), value) in found.iter().zip(values) {
+        let text = [&*before, value, after].concat();
+        let alone = pixels(&page.ask("studio/png", json!({ "text": text })));
+        assert!(*frame == alone[0].0, "{value}");
+        assert_eq!(*pause, Some((500, 1000)));
+    }
+    assert!(found[0].0 != found[1].0 && found[1].0 == found[3].0);
+    // Each mistake is told, and the next file is made nevertheless.
+    for (params, message) in [
+        (of(&["1", "0"]), "with 0 the scene has errors"),
+        (of(&[]), "an animation needs `values`"),
+        (json!({ "values": ["1"] }), "there is no `before`"),
+    ] {
+        let error = &page.respond("studio/png", params)["error"];
+        assert_eq!(error["message"], message);
+    }
+    let (head, rest) = SCENE.split_once("64").unwrap();
+    let params = json!({ "before": head, "values": ["64", "65"], "after": rest, "time": 2000 });
+    let error = &page.respond("studio/png", params)["error"];
+    assert_eq!(error["message"], "the size of the picture changes");
+    assert_eq!(pixels(&page.ask("studio/png", of(&["2"]))).len(), 1);
 }
 
 #[test]

@@ -42,8 +42,8 @@ fn a_save_writes_the_file_and_notifies_other_pages() {
     assert_eq!(save(&mut first, "// é\r\n", Some(SCENE))["result"], saved());
     assert_eq!(folder.text("a.scn"), "// é\r\n");
     assert_eq!(told(&mut second), [json!("// é\r\n"), Value::Null]);
-    // If the file already contains the text, saving the text succeeds even if `base`, the content
-    // that the page knows, is out of date.
+    // `base` is the content that the page knows, and is out of date here. Saving still succeeds if
+    // the file already contains the text.
     for (text, base) in [("// é\r\n", "x"), ("// 2", "// é\r\n")] {
         assert_eq!(save(&mut second, text, Some(base))["result"], saved());
     }
@@ -189,7 +189,8 @@ fn a_new_scene_is_saved_only_under_an_unused_name() {
     assert_eq!(outer.text("inner/there.scn"), "// there");
     assert_eq!(save(&mut page, json!("new one.scn"))["result"], saved());
     assert_eq!(outer.text("inner/new one.scn"), "// new");
-    // After its first save, both pages are notified of the new scene, as of any saved file.
+    // When the new scene is saved for the first time, both pages are notified of it, as of any
+    // saved file.
     for page in [&mut page, &mut other] {
         assert_eq!(
             page.notification("studio/file"),

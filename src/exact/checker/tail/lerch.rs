@@ -32,10 +32,12 @@ pub(super) fn lerch(theta: f64, rotation: Complex, w: f64) -> [Complex; 3] {
     })
 }
 
-/// Returns the regular function R(ζ) = 1/(1 − e^(−ζ)) − 1/ζ at ζ = −iθ, where R = ½ + i·r, as the
-/// real numbers r and R′:
+/// Returns r and the derivative R′ of the function R(ζ) = 1/(1 − e^(−ζ)) − 1/ζ at ζ = −iθ. The
+/// function is regular at 0. At ζ, R = ½ + i·r, and r and R′ are real:
 ///
 /// r = ½·cot(θ/2) − 1/θ, R′ = 1/(4·sin²(θ/2)) − 1/θ²
+///
+/// `rotation` must be e^(iθ).
 fn rest_of_pole(theta: f64, rotation: Complex) -> (f64, f64) {
     let square = theta * theta;
     if theta.abs() < NEAR_POLE {

@@ -13,8 +13,8 @@ use crate::math::{Double, Real};
 
 /// Maximum truncation error of a sum over an edge's crossings, as a fraction of the pixel's
 /// tolerance, if the depth less than doubles along the edge. A thousandth hardly adds to the
-/// pixel's error. The maximum is the fraction [`LATER_TERMS_SHARE`] of the edge's own tolerance
-/// instead if this is more.
+/// pixel's error. If the fraction [`LATER_TERMS_SHARE`] of the edge's own tolerance is greater, the
+/// maximum is that fraction instead.
 const LEVEL_TRUNCATION: f64 = 1e-3;
 /// Minimum ratio of the depth in the middle of an edge to the change of the depth along the edge,
 /// at which the depth is treated as constant. This approximation adds at most 4/STEADY, about 1e-6,
@@ -86,19 +86,21 @@ pub(super) fn sum(
     let later: f64 = (MODE_TERMS + 1..=series.terms)
         .map(|k| lines * series.size(k, all.depth))
         .sum();
-    // If the depth m is treated as constant, m^−s is replaced by its value in the middle of the
-    // edge, where s is 3, 4 or 5. The relative error is at most s·gN/2m. Here N is the number of
-    // crossings, and g is the change of m from one crossing to the next. If m is not treated as
-    // constant, two Lerch series are used. Relative to its first term, each has a rounding error of
-    // about 500·w/2 roundings and a truncation error of at most 0.04·s·(s + 1)/w².
+    // In a steady sum, m^−s is replaced by its value in the middle of the edge. Here m is the
+    // depth, and s is 3, 4 or 5. The relative error is at most s·gN/2m, where N is the number of
+    // crossings, and g is the change of m from one crossing to the next.
+    //
+    // Otherwise, two Lerch series are used. Relative to its first term, each has a rounding error
+    // of about 500·w/2 roundings and a truncation error of at most 0.04·s·(s + 1)/w².
     let model = if is_steady {
         4.0 / STEADY
     } else {
         500.0 * UNIT * w / lines + 2.4 / (w * w * lines)
     };
     // Up to mode n, the phase at each end of the edge is multiplied n/2 times by a rotation. Each
-    // product has four roundings, which makes 4n roundings at the two ends. The rounding errors of
-    // the rotations add up to as much again. A mode has about 30 more operations at each end.
+    // product is computed with four roundings, which makes 4n roundings at the two ends. The
+    // rounding errors of the rotations add up to another 4n. A mode requires about 30 more
+    // operations at each end.
     let rounding = UNIT * (64.0 + 8.0 * last);
     BoundedSum {
         value,
@@ -183,8 +185,9 @@ mod tests {
         for theta in [0.0, 1e-6, -1e-3, 0.02, 0.7, 3.0, -PI] {
             let found = partial(theta, 5000.0, 3000.0, places(theta, 3000.0));
             for (s, found) in (3..).zip(found) {
-                // The truncation error of `lerch`, 0.04·s·(s + 1)/w², is 5e-8 at w = 5000. 500
-                // roundings of w/2 add 3e-10.
+                // `partial` is a difference of two Lerch series. Relative to the first term, a
+                // series has a truncation error of at most 0.04·s·(s + 1)/w², which is 5e-8 at w =
+                // 5000 and s = 5. The rounding errors of both series add up to 3e-10.
                 close(found, one_by_one(theta, 5000.0, 3000.0, s), 1e-7);
             }
         }

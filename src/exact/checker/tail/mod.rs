@@ -64,7 +64,7 @@ const MAX_DIRECT: f64 = 20_000.0;
 /// a few milliseconds.
 const MAX_TERMS_ADDED: f64 = 300_000.0;
 /// Fraction of an edge's tolerance up to which the sum over the edge's crossings is neglected: it
-/// is taken as 0, and its upper bound is added to the error. Skipped Fourier modes may use up the
+/// is treated as 0, and its upper bound is added to the error. Skipped Fourier modes may use up the
 /// same fraction. The fractions of all kinds of errors must add up to less than 1.
 const SKIPPED_SHARE: f64 = 0.25;
 /// Fraction of an edge's tolerance that may be used up by leaving out terms of the edge's series
@@ -75,10 +75,10 @@ const LATER_TERMS_SHARE: f64 = 0.05;
 /// pixel's budget, and need not be precise, because the budget only stops computations that take
 /// too long.
 const CROSSING_WORK: f64 = 1.0 / 16.0;
-/// Half of the approximate time to compute one Fourier mode, in units of about 50 ns. It is
-/// multiplied by the number n of the last mode, and only half of the numbers up to n, the odd ones,
-/// have modes. The product is charged to the pixel's budget. A rough value is enough, because the
-/// budget only stops computations that take too long.
+/// Half of the approximate time to compute one Fourier mode, in units of about 50 ns. The work
+/// charged to the pixel's budget is this time multiplied by the number n of the last mode. It is
+/// half of a mode's time, because only the odd numbers up to n have modes. A rough value is enough,
+/// because the budget only stops computations that take too long.
 const MODE_WORK: f64 = 1.0 / 4.0;
 
 /// Computes the alternating sum Σ (−1)^j·X over all crossings j of an edge with lines of the board.
@@ -106,8 +106,9 @@ pub(super) fn sum(
         return unknown;
     }
     if all.rise * lines < all.depth {
-        // The depth m less than doubles between the edge's ends, so that the Fourier modes of a sum
-        // from one end to infinity would decay too slowly. `level` sums between the two ends.
+        // The depth less than doubles between the edge's ends. A sum from one end to infinity would
+        // extend to much greater depths than the edge, and its Fourier modes would decay too
+        // slowly. `level` sums only between the two ends.
         let sum = level::sum(all, series, trivial, tolerance, budget);
         if sum.bound > tolerance && lines <= MAX_TERMS_ADDED {
             return one_by_one(lines).unwrap_or(sum);

@@ -69,9 +69,9 @@ fn edges(
         prop::array::uniform2(-1.0..1.0_f64),
     )
         .prop_map(move |(lines, growth, stride, t, [climb, slope])| {
-            // The derivatives `climb` and `slope` of the depth are at most 1 in size, so the depth
-            // is at least 18 (`NEAR_SQUARES`) times each of them. The series is used only at such
-            // depths.
+            // The derivatives `climb` and `slope` of the depth are at most 1 in size. The depth is
+            // therefore at least 18 (`NEAR_SQUARES`) times as large as each derivative. The series
+            // is used only at such depths.
             let depth = 18.0;
             let rise = if lines.is_finite() {
                 depth * growth / lines

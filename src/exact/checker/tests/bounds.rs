@@ -14,7 +14,7 @@ use crate::reference::{
     tightness::Tightness,
 };
 
-/// Errors found, by the way in which [`Homography::over`] computes the integral.
+/// Errors found, grouped by the method with which [`Homography::over`] computes the integral.
 #[derive(Default)]
 struct Found {
     few: Tightness,
@@ -125,8 +125,8 @@ fn errors_of_boards_are_within_tight_bounds() {
 #[test]
 fn a_square_that_goes_to_the_horizon_is_known() {
     // The eye is 10^−`exponent` squares above the board, and one square fills nearly all of the
-    // floor in the pixel. From 90 on, the board's matrix cannot be distinguished from a singular
-    // one.
+    // floor in the pixel. If the exponent is 90 or more, the board's matrix cannot be distinguished
+    // from a singular one.
     for exponent in 0..90 {
         let view = PixelView {
             height: libm::pow(10.0, -f64::from(exponent)),

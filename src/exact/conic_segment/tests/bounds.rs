@@ -53,9 +53,9 @@ impl ExactArc {
         }
     }
 
-    /// Returns the area between the arc and its chord. The arc, and then each of its parts, is
-    /// halved 60 times, at the point where the tangent is parallel to the chord. Each halving
-    /// brings the weight nearer to 1, that of a parabola.
+    /// Returns the area between the arc and its chord. In each of 60 rounds, all arcs are halved,
+    /// each at the point where its tangent is parallel to its chord. A halving brings the weight
+    /// nearer to 1, the weight of a parabola.
     fn area(&self) -> N {
         let (mut share, mut scale, mut weight) =
             (NUMBER.exact(0.0), NUMBER.exact(1.0), self.weight.clone());
@@ -93,10 +93,10 @@ impl ExactArc {
         cuts
     }
 
-    /// Returns the parameters between 0 and 1 at which a linear form is 0. `values` are its values
-    /// at the arc's three points.
+    /// Returns the parameters between 0 and 1 at which a linear form is 0. The argument contains
+    /// the form's values at the arc's start, control point and end.
     fn zeros(&self, [start, control, end]: [N; 3]) -> Vec<N> {
-        // In r = t/(1 − t), the form is proportional to end·r² + 2·half·r + start.
+        // The form is proportional to end·r² + 2·half·r + start, where r = t/(1 − t).
         let half = &self.weight * control;
         let discriminant = &half * &half - &start * &end;
         if discriminant < N::ZERO {

@@ -3,8 +3,9 @@
 
 use super::*;
 
-/// Rows of five cells: the image, the camera, the sides of squares to try, an object, and the area
-/// in which each pixel is compared with the mean of its four quarters.
+/// Views to test. Each row has five cells: the image, the camera, the sides of the board's squares
+/// with which the view is tested, a further object, and an area. In this area, each pixel is
+/// compared with the mean of its four quarters.
 const VIEWS: &str = "
     -- Through lenses so long that a pixel next to the horizon begins millions of millions of squares away, where a rounding of a place is as much as the pixel is wide: alone, before a far plane, and next to an outline.
     width 6 height 4 -> eye (-3.8129918102387705, 0.29933186775843634, 5.521568092661159) direction (0.29550764467648694, 2.7116391188331324e-13, -0.9553403749123949) roll -0.6189217287574991deg d 3.227743535403821e12 -> 1 -> -> 1,1,1,3

@@ -12,12 +12,13 @@ use crate::reference::{
     tightness::Tightness,
 };
 
-/// Returns linear forms of the position within a pixel. Their quotients are the coordinates that
-/// the position shows on a board at the height `y`, below `eye`. The coordinates are in squares
+/// Returns the linear forms that map a position in `pixel` to coordinates on a board. The board has
+/// the height `y`, below `eye`. Each coordinate is the quotient of two of the forms, in squares
 /// with the side `square`.
 ///
-/// The ray r from the eye e meets the board at x = e_x + (y − e_y)·r_x/r_y. The formula for z has z
-/// in place of x. Every component of r is a linear form of the position in the pixel.
+/// A ray with the direction r from the eye e meets the board at x = e_x + (y − e_y)·r_x/r_y. The
+/// formula for the other coordinate is the same with z instead of x. Every component of r is a
+/// linear form of the position in the pixel.
 fn forms(oracle: &Oracle, pixel: &BoardPixel, eye: DVec3, [y, square]: [f64; 2]) -> ExactBoard {
     let number = |x| oracle.number.exact(x);
     let ray = |x, y| oracle.direction(pixel.x, pixel.y, dvec2(x, y));
