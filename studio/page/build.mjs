@@ -27,6 +27,7 @@ camera { eye (3, 3.5, 8)  lookat (0.2, 0.8, 0)  d 2.75 }
 sampler { method multi_jittered  per_pixel 16  seed 1 }
 `;
 
+const target = ["chrome111", "firefox113", "safari16.4"];
 const { metafile } = await build({
   // The host `pinhole studio` runs the engine itself. On a website, a worker of the page runs it.
   entryPoints: { studio: "src/main.ts", ...(host === "static" ? { engine: "src/worker.ts" } : {}) },
@@ -34,7 +35,7 @@ const { metafile } = await build({
   alias: { "pinhole-engine": "./engine/pinhole.js" },
   bundle: true,
   format: "esm",
-  target: ["chrome111", "firefox113", "safari16.4"],
+  target,
   minify: true,
   legalComments: "none",
   define: { EXAMPLES: JSON.stringify(examples), LESSONS: JSON.stringify(lessons), EMPTY: JSON.stringify(EMPTY) },
@@ -42,7 +43,7 @@ const { metafile } = await build({
   logLevel: "warning",
   outdir: folder,
 });
-await build({ entryPoints: ["src/studio.css"], bundle: true, minify: true, logLevel: "warning", outdir: folder });
+await build({ entryPoints: ["src/studio.css"], bundle: true, target, minify: true, logLevel: "warning", outdir: folder });
 
 // A website sends no headers of its own, so the page contains its content security policy. The host
 // `pinhole studio` sends a stricter one, with a nonce for the editor's styles.

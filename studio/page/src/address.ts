@@ -1,6 +1,7 @@
-// The fragment of the page's address: `key=value` pairs joined by `&`. It may contain the token,
-// since browsers send no fragment to a server. This module must be loaded first: it removes the
-// token from the address before other modules read the address.
+// The fragment of the page's address: `key=value` pairs joined by `&`. It may contain the access
+// token that the host gave to the page, since browsers send no fragment to a server. This module
+// must be loaded first: it removes the token from the address before other modules read the
+// address.
 
 import { remember, remembered } from "./dom";
 

@@ -1,5 +1,5 @@
-// Types of what the build provides: the module that `npm run site` makes from studio/engine, and
-// the texts of scenes.
+// Types of modules and constants that the build provides: the engine, which `npm run site` makes
+// from studio/engine, and the texts of scenes and lessons.
 
 declare module "pinhole-engine" {
   export class Engine {
@@ -13,7 +13,7 @@ declare module "pinhole-engine" {
 
 /** Names and texts of the example scenes. The build inserts them into the page. */
 declare const EXAMPLES: [string, string][];
-/** The lessons, in their order. The build inserts them into the page. */
+/** The lessons, in the order of the list. The build inserts them into the page. */
 declare const LESSONS: { name: string; text: string; start: string }[];
 /** Text of a new scene. */
 declare const EMPTY: string;

@@ -1,23 +1,26 @@
-// The connection to the engine: a WebSocket to the host, or a web worker. Each text is a JSON-RPC
-// message. A lost connection is reopened after growing pauses, unless the host refuses the page.
+// The connection to the engine, which computes all answers. It is a WebSocket to the host (the
+// program that serves the page), a web worker, or the extension of VS Code whose panel contains the
+// page. Each text is a JSON-RPC message. A lost connection is reopened after growing pauses, unless
+// the host refuses the page.
 
 import type { Transport } from "@codemirror/lsp-client";
 import { session } from "./address";
 import { meta } from "./dom";
+import { panel } from "./panel";
 import { Refusal } from "./protocol";
 
 /** An open channel that sends texts to the engine. */
 interface Wire { send(text: string): void }
 
-/** Reason why there is no connection. After the first three reasons, the page reconnects by itself:
- * the connection was lost, the host ended, or the worker failed. After any other reason, the user
- * must open an address that the host has printed: the page has no token, or its token is unknown,
- * from an earlier run of the host, sent too late, or sent twice. */
+/** Reason why there is no connection. After `lost`, `ended` (the host ended) and `failed` (the
+ * worker failed), the page reconnects by itself. After the other reasons, the user must open an
+ * address that the host has printed: the page has no token (`keyless`), or its token is unknown, is
+ * from an earlier run of the host (`restarted`), was sent too late, or was sent twice. */
 type Closed = "lost" | "ended" | "failed" | "keyless" | "unknown" | "restarted" | "late" | "twice";
 const TRIED_AGAIN: Closed[] = ["lost", "ended", "failed"];
 
-/** State of the connection. `silent` means that the connection is lost and that as many attempts to
- * reconnect have failed as `PAUSES` has entries. */
+/** State of the connection. `silent` means that the connection is lost, and that the attempts to
+ * reconnect after all `PAUSES` have failed. */
 export type ConnectionState = "connecting" | "open" | "silent" | Closed;
 
 /** Function that opens a channel. It calls `opened` with the channel, `receive` for each text, and
@@ -137,6 +140,12 @@ class Connection implements Transport {
     });
   }
 
+  /** Sends a notification after all earlier messages, if there is a connection. */
+  notify(method: string, params: object): void {
+    const text = JSON.stringify({ jsonrpc: "2.0", method, params });
+    this.ready().then(() => this.wire?.send(text)).catch(() => {});
+  }
+
   private receive(text: string): void {
     // The pauses between attempts to reconnect start anew. This is done at the first message, not
     // when the channel opens, because a failing server may accept connections.
@@ -175,16 +184,23 @@ class Connection implements Transport {
   }
 }
 
+/** The socket of the latest attempt to connect. Earlier ones are closed, so that their late answers
+ * do not replace a newer token. */
+let latest: WebSocket | undefined;
+
 /** Opens a WebSocket and sends the page's token. The host's first message contains the token to use
  * next time; after it, the channel is open. */
 const webSocket: Connector = (opened, receive, closed) => {
   const { token } = session;
   if (token === null) return closed("keyless");
   const socket = new WebSocket(`${location.origin.replace(/^http/, "ws")}/socket`);
+  latest?.close();
+  latest = socket;
   let isOpen = false;
   socket.addEventListener("open", () => socket.send(token));
   socket.addEventListener("message", event => {
     if (isOpen) return receive(String(event.data));
+    if (socket !== latest) return;
     isOpen = true;
     session.keep(JSON.parse(String(event.data)).params.token, "host");
     opened(socket);
@@ -208,5 +224,19 @@ const worker: Connector = (opened, receive, closed) => {
   });
 };
 
+/** Asks the panel's extension for a conversation. Its first text opens the channel; `ended` closes
+ * it. */
+const extension: Connector = (opened, receive, closed) => {
+  let isOpen = false;
+  window.onmessage = ({ data }: MessageEvent<unknown>) => {
+    if (typeof data !== "string") return;
+    if (data === "ended") return closed("failed");
+    if (!isOpen) opened({ send: text => panel?.postMessage(text) });
+    isOpen = true;
+    receive(data);
+  };
+  panel?.postMessage("waiting");
+};
+
 export const isServed = meta("host") !== "static";
-export const connection = new Connection(isServed ? webSocket : worker);
+export const connection = new Connection(panel ? extension : isServed ? webSocket : worker);

@@ -39,7 +39,8 @@ function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
   const ofAll = actions.filter(action => action.diagnostics === undefined);
   const shown = diagnostics.map((diagnostic): Diagnostic => {
     const fixes = mending.get(keyOf(diagnostic)) ?? [];
-    // A fix of all problems is listed once, at the first problem with a fix of its own.
+    // Fixes that belong to no single problem mend several problems at once. They are listed once,
+    // at the first problem with a fix of its own.
     const all = fixes.length > 0 ? ofAll.splice(0) : [];
     return {
       from: editor.offset(diagnostic.range.start),
@@ -52,7 +53,8 @@ function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
   editor.view.dispatch(setDiagnostics(editor.view.state, shown));
 }
 
-/** Returns a key that a code action has in common with the diagnostic that it fixes. */
+/** Returns a key by which a code action finds the diagnostic that it fixes: the diagnostic's
+ * message and range. */
 const keyOf = ({ message, range }: ServerDiagnostic) => JSON.stringify([message, range]);
 
 function fix(action: CodeAction): Action {
@@ -67,8 +69,9 @@ function fix(action: CodeAction): Action {
       // The edits fit only the text that was checked. If the text has changed since, they are not
       // applied; diagnostics of the new text will arrive.
       if (view.state.doc !== doc) return;
-      // The example value is selected, so that typing replaces it. Its range is in bytes, which are
-      // characters here, because the text of such a fix is ASCII.
+      // The fix inserts an example value. This value is selected, so that typing replaces it. Its
+      // range is in bytes, which are equal to characters here, because a fix with an example value
+      // inserts only ASCII.
       const at = edits[0] ? editor.offset(edits[0].range.start) : 0;
       const made = value && { selection: { anchor: at + value[0], head: at + value[1] } };
       const changes = editor.changes(edits);
@@ -98,6 +101,13 @@ function diagnosed(): [Diagnostic, number, number][] {
   return found;
 }
 
+const told = (message: string, from: number) =>
+  `${editor.view.state.doc.lineAt(from).number}: ${message}`;
+
+/** Returns the first error with its line, if there is one. */
+export const firstError = () => diagnosed().filter(([it]) => it.severity === "error").slice(0, 1)
+  .map(([{ message }, from]) => `Line ${told(message, from)}`);
+
 /** Lists the problems below the text: only the first one or, if the list is open, all. */
 export function showProblems(): void {
   const found = diagnosed();
@@ -117,8 +127,7 @@ export function showProblems(): void {
 function item({ severity, message, actions }: Diagnostic, from: number, to: number): HTMLElement {
   const { view } = editor;
   const item = create("li", severity);
-  const { number } = view.state.doc.lineAt(from);
-  item.append(createButton(`${number}: ${message}`, "place", () => {
+  item.append(createButton(told(message, from), "place", () => {
     view.dispatch({ selection: { anchor: from }, scrollIntoView: true });
     view.focus();
   }));

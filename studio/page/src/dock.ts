@@ -1,4 +1,4 @@
-// The dock below the picture. It is hidden while all of its parts are.
+// The dock below the picture. It is hidden if all of its parts are hidden.
 
 import { byId } from "./dom";
 

@@ -1,5 +1,6 @@
 // Helpers for the document: finding and creating elements, pointers, downloads and storage.
 
+import { panel } from "./panel";
 import { setText } from "./visible";
 
 /** Returns the element of index.html with the id `id`. Throws an error if there is none. */
@@ -101,14 +102,16 @@ export function fromBase64(text: string): Uint8Array<ArrayBuffer> {
   return native.fromBase64?.(text) ?? Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
 }
 
-/** Returns a setting stored in the browser or the tab. Returns null if there is none. */
+/** Returns a setting stored in the browser, the tab or the panel. Returns null if there is none. */
 export function remembered(key: string, where: Store = "localStorage"): string | null {
+  if (panel) return panel.getState()?.[key] ?? null;
   try {
     return window[where].getItem(`pinhole-${key}`);
   } catch { return null; }
 }
 
 export function remember(key: string, value: string, where: Store = "localStorage"): void {
+  if (panel) return panel.setState({ ...panel.getState(), [key]: value });
   try {
     window[where].setItem(`pinhole-${key}`, value);
   } catch { /* The page works without. */ }

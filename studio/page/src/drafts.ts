@@ -58,11 +58,10 @@ async function keepDraft(saved?: string): Promise<void> {
   const isNew = isUnsaved && textToSave !== restored?.text;
   if (isNew || isKept) due.set(id, isNew ? newDraft() : id === restored?.id ? restored : null);
   isKept = isNew;
-  // An offered draft whose text is saved or in the editor is not needed, so it is deleted. Before
-  // the server has opened the scene, the text in the editor may still be replaced, so it is not
-  // compared then.
-  const there = [saved, editor.uri === "" ? undefined : textToSave];
-  for (const it of offers) if (there.includes(it.text)) forget(it);
+  // Offered drafts are deleted if their text is saved or in the editor. The text in the editor is
+  // compared only after the server has opened the scene; before, it may still be replaced.
+  forgetEqual(saved);
+  if (editor.uri !== "") forgetEqual(textToSave);
   await Promise.all([...due].map(async ([id, draft]) => {
     try {
       await stored(id, draft);
@@ -110,14 +109,15 @@ function show(): void {
 }
 
 function answer(draft: Draft, isRestored: boolean): void {
+  if (isRestored) files.closeLesson();
   if (isRestored) leave();
   forget(draft);
   if (isRestored) {
     due.delete(draft.id);
     restored = draft;
-    // Before the host has sent its state, it is not known whether the host has stored this draft,
-    // too. Therefore, the page stores its later drafts under this draft's key, so that they replace
-    // the host's copy, if there is one.
+    // Before the host has sent its state, it is not known whether the host, too, has stored this
+    // draft. From now on, the page stores its own drafts under the key of this draft. They replace
+    // the host's copy if there is one.
     if (!files.isTold) id = draft.id;
     files.restore(draft.text, draft.base, draft.name);
   }
@@ -131,10 +131,15 @@ function forget(draft: Draft): void {
   show();
 }
 
+function forgetEqual(text?: string): void {
+  for (const it of offers) if (it.text === text) forget(it);
+}
+
 /** Offers the unsaved text as a draft, because another scene is about to replace the text. */
 function leave(): void {
   if (!files.isUnsaved) return void keepDraft();
   const left = files.textToSave === restored?.text ? restored : newDraft();
+  forgetEqual(left.text); // the text may have been left before, for a lesson
   due.set(left.id, left);
   offers.unshift(left);
   id = freshId();

@@ -1,6 +1,7 @@
-// A drag of an object's handle or of the camera. Each edit is computed from the text before the
-// drag, the first point of the pointer and its newest point, never from the edit before. So the
-// page opens the text before the drag as a separate document at the server.
+// A drag of an object's handle or of the camera. The server computes each edit from three things:
+// the text before the drag, the point where the pointer was pressed, and the pointer's newest
+// point. The editor's text has changed by then. Therefore, the page opens the text before the drag
+// as a separate document at the server.
 
 import { byId, followPointer, newestOf } from "./dom";
 import { editor } from "./editor";
@@ -22,7 +23,7 @@ const own: Surface = { picture, view: null };
 
 /** Maximum movement of the pointer in a click, in screen pixels. A hand is never quite still, so
  * only a larger movement begins a drag. */
-const CLICK = 4;
+export const CLICK = 4;
 
 const BROKEN = "The text has errors. Mend them, then the picture can be changed by hand.";
 const WAITING = "Waiting for Studio…";
@@ -119,8 +120,8 @@ export class Drag {
     if (!this.isOpen) editor.openAside(uri, base);
     this.isOpen = true;
     // A handle that was pressed beside its centre must not jump to the pointer, so it is moved by
-    // the same vector as the pointer. For the camera, the server gets the first and the latest
-    // point.
+    // the same vector as the pointer. For a drag of the camera, the server gets the point where the
+    // pointer was pressed and its newest point.
     const to = object === null ? place : [at[0] + place[0] - press[0], at[1] + place[1] - press[1]];
     const { picture, view } = this.surface;
     const about = { textDocument: { uri }, object, handle, from: press, to, view,

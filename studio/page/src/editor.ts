@@ -37,8 +37,9 @@ const wholeCharacters = EditorState.transactionFilter.of(transaction => {
   return changes.length === 0 ? transaction : [transaction, { changes, sequential: true }];
 });
 
-/** Inserts typed text if the selection or the text spans several lines. In these cases, the browser
- * would add inline styles, which the page's content security policy forbids. */
+/** Inserts typed text itself, not through the browser, if the typed text or the selection spans
+ * several lines. In these cases, the browser would add inline styles, which the page's content
+ * security policy forbids. */
 const replacedLines = EditorView.domEventHandlers({
   beforeinput({ inputType, data, isComposing }, view) {
     const { state } = view;
@@ -182,10 +183,10 @@ class SceneEditor {
     return { start: this.position(from), end: this.position(to) };
   }
 
-  /** Replaces the text and starts a new history, so that Undo cannot remove the new text. */
-  open(text: string): void {
+  /** Replaces the text and its undo history. With an empty one, Undo cannot remove the new text. */
+  open(text: string, past: Extension = []): void {
     const changes = { from: 0, to: this.view.state.doc.length, insert: text };
-    rewrite(this.view, { changes, selection: { anchor: 0 } });
+    rewrite(this.view, { changes, selection: { anchor: 0 } }, past);
   }
 
   /** Opens another text at the server under the URI `uri`, without showing it in the editor. */
@@ -204,9 +205,9 @@ class SceneEditor {
       Prec.highest(EditorState.readOnly.of(false)), this.client.plugin(this.uri, "pinhole")]) });
   }
 
-  /** Replaces the text by changing only what differs, so that the cursor stays. A pure insertion or
-   * deletion is moved to the start of its line if the result is the same. For example, an inserted
-   * block is then a change of whole lines, although it begins like the block before it. */
+  /** Replaces the text by changing only what differs, so that the cursor stays. If an insertion or
+   * deletion can start at the beginning of a line with the same result, it does so. For example, if
+   * two blocks begin alike, inserting the second is a change of whole lines. */
   replace(content: string): void {
     const [old, text] = [this.text, withLf(content)];
     let end = 0;

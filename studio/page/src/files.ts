@@ -7,6 +7,8 @@ import { StateEffect, type Extension, type Transaction } from "@codemirror/state
 import { connection, isServed } from "./connection";
 import { byId, create, createButton, download } from "./dom";
 import { editor, withLf } from "./editor";
+import { pastOf } from "./gesture";
+import { panel } from "./panel";
 import { Refusal, type HostedFile, type Saved } from "./protocol";
 import { say, unsay } from "./status";
 import { setText, visibleLine } from "./visible";
@@ -16,6 +18,8 @@ const FIGURE = EXAMPLES.find(([name]) => name === "figure_9_9")?.[1] ?? EMPTY;
 /** The browser's file pickers; undefined in browsers without them. */
 const pickers: Partial<Pick<typeof window, `show${"Open" | "Save"}FilePicker`>> = window;
 const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": ".scn" as const } }] };
+
+const UNNAMED = "scene.scn";
 
 /** A scene and its file. */
 class Scene {
@@ -32,13 +36,22 @@ class Scene {
   isNew = isServed;
   /** Initial text of a new scene, which need not be saved; null if the scene comes from a file. */
   untouched: string | null = null;
+  /** `link` if the scene was in a link. */
+  from: "link" | null = null;
 
   /** Creates a scene. If `of` is given, the new scene is a copy of `of` under another name, and
    * becomes the current scene when it is saved. */
-  constructor(public name = "scene.scn", readonly of: Scene | null = null) {}
+  constructor(public name = UNNAMED, readonly of: Scene | null = null) {}
 
   /** Last known content of the file, or the initial text if there is no file. */
   get held(): string { return this.seen ?? this.untouched ?? ""; }
+
+  /** Returns whether `text` is neither in the file nor the initial text. */
+  isChangedBy(text: string): boolean {
+    const { isGone, seen, untouched } = this;
+    return !panel && (untouched === null || text !== withLf(untouched))
+      && (isGone || seen === null || text !== withLf(seen) || LONE.test(seen));
+  }
 }
 
 /** Effect of a change that replaces one scene by another. Undo restores the first scene. */
@@ -61,16 +74,23 @@ class Files {
   onSaved: (text: string) => void = () => {};
   /** Called before another scene replaces the current one. */
   onLeave: () => void = () => {};
+  /** Closes the open lesson if its scene is shown. Then the user's own scene is shown again. */
+  closeLesson: () => void = () => {};
   /** Whether the host has sent its scene to this page. */
   isTold = false;
-  /** Draft or link that was restored before the host sent its scene; null if there is none. For a
-   * draft, `base` is the content of its file when editing began, or null if there was no file; for
-   * a link, it is undefined. */
+  /** Draft, or scene of a link, that was restored before the host sent its scene; null if there is
+   * none. `base` is the content of the draft's file when editing began, or null if there was no
+   * file. For a link, `base` is undefined. */
   private early: { base: string | null | undefined; text: string } | null = null;
   /** The scene of the host's file. */
   private hosts = new Scene();
   /** The scene that the page shows. */
   at = this.hosts;
+  /** Newest state of the host's file, if it arrived while another scene was shown. */
+  private late: HostedFile | null = null;
+  /** Scene, text and undo history that the scene of a lesson has replaced; null if no lesson's
+   * scene is shown. */
+  private own: { scene: Scene; text: string; past: Extension } | null = null;
   private readonly conflict = byId<HTMLDialogElement>("conflict-dialog");
 
   constructor() {
@@ -87,15 +107,55 @@ class Files {
     for (const [name, text] of EXAMPLES) byId("examples").append(
       createButton(name.replace(/(\d)_(\d)/, "$1.$2").replaceAll("_", " "), "",
         () => this.start(`${name}.scn`, text)));
-    addEventListener("beforeunload", event => { if (this.isUnsaved) event.preventDefault(); });
+    addEventListener("beforeunload", event => {
+      if (this.isUnsaved || this.own?.scene.isChangedBy(this.own.text)) event.preventDefault();
+    });
   }
 
   /** Shows a new scene with this name and text. Undo restores the old scene. */
   start(name: string, text: string): void { this.begin(text, new Scene(name)); }
 
-  /** Replaces the shown scene by the scene `to` with this text. Undo restores the old scene. */
+  private startLink(text: string): void {
+    this.begin(text, Object.assign(new Scene(), { from: "link" }));
+  }
+
+  /** Shows the scene of a lesson. Its initial text is `start`; `text` is what the user has made of
+   * it so far. Undo does not leave the lesson: `leaveLesson` restores the user's own scene. */
+  startLesson(name: string, start: string, text: string): void {
+    if (!this.isTold) return say("Studio is not ready yet.", "warning");
+    if (this.own === null) {
+      this.onLeave();
+      this.own = { scene: this.at, text: editor.text, past: pastOf(editor.view) };
+    }
+    this.at = Object.assign(new Scene(name), { untouched: start });
+    editor.open(text);
+  }
+
+  /** Shows the user's own scene again if the scene of a lesson has replaced it. */
+  leaveLesson(): void {
+    if (this.own === null) return;
+    const { scene, text, past } = this.own;
+    this.own = null;
+    this.at = scene;
+    editor.open(text, past);
+    this.followHost();
+  }
+
+  /** Whether the scene of a lesson is shown. */
+  get isLesson(): boolean { return this.own !== null; }
+
+  /** Handles what has happened to the host's file while another scene was shown. Does so later,
+   * because the host's scene may be about to be replaced again, or a transaction may be under
+   * way. */
+  private followHost(): void {
+    queueMicrotask(() => { if (this.at === this.hosts && this.late) this.hosted(this.late); });
+  }
+
+  /** Replaces the shown scene by the scene `to` with this text. Undo restores the old scene. A
+   * lesson's scene is not restored: the user's own scene takes its place first. */
   private begin(text: string, to = new Scene()): void {
     if (!this.isTold) return say("Studio is not ready yet.", "warning");
+    this.closeLesson();
     this.onLeave();
     to.untouched = to.seen === null ? text : null;
     const { view } = editor;
@@ -104,22 +164,20 @@ class Files {
       effects: turns.of({ from: this.at, to }) });
   }
 
-  /** After Undo, Redo or the start of a new scene, the editor shows another scene. Makes this scene
-   * the current one or, if it was saved under another name, its newest copy. */
+  /** Makes the scene that the editor shows the current scene, after Undo, Redo or the start of a
+   * new scene. If this scene was saved under another name, its newest copy becomes the current
+   * scene. */
   follow(transactions: readonly Transaction[]): void {
     for (const { effects } of transactions) for (const it of effects) {
-      if (it.is(turns)) for (let at: Scene | null = it.value.to; at; at = at.copy) this.at = at;
+      if (!it.is(turns)) continue;
+      for (let at: Scene | null = it.value.to; at; at = at.copy) this.at = at;
+      this.followHost();
     }
   }
 
   private get shownName(): string { return visibleLine(this.at.name); }
 
-  get isUnsaved(): boolean {
-    const { text } = editor;
-    const { isGone, seen, untouched } = this.at;
-    return editor.uri !== "" && (untouched === null || text !== withLf(untouched))
-      && (isGone || seen === null || text !== withLf(seen) || LONE.test(seen));
-  }
+  get isUnsaved(): boolean { return editor.uri !== "" && this.at.isChangedBy(editor.text); }
 
   /** The text with the line ends that its file has. */
   get textToSave(): string { return withEndsOf(this.at.held, editor.text); }
@@ -130,19 +188,22 @@ class Files {
       this.early = { base, text };
       const untouched = base === undefined ? text : null;
       Object.assign(this.at, { name, base: base ?? null, untouched });
-    } else if (base !== undefined && this.at.seen !== null) this.at.base = base;
+    } else if (base === undefined) return this.startLink(text);
+    else if (this.at.seen !== null) this.at.base = base;
     editor.replace(text);
     editor.start();
     this.show();
   }
 
   /** Handles the host's file. The host sends it at the start and after each change of the file. */
-  hosted({ name, text, reason, saved }: HostedFile): void {
+  hosted(file: HostedFile): void {
+    const { name, text, reason, saved } = file;
     unsay(NOT_SAVED);
     Object.assign(this.hosts, { name, isNew: isServed && !saved });
     // While the page shows another scene, the text in the editor is not the host's, so it is not
     // replaced.
-    if (this.at !== this.hosts) return this.show();
+    this.late = this.at === this.hosts ? null : file;
+    if (this.late !== null) return this.show();
     if (!this.isTold) {
       const [early, { view: { state: { selection } } }] = [editor.text, editor];
       this.isTold = true;
@@ -152,12 +213,14 @@ class Files {
       editor.open(start);
       this.tellLone();
       if (this.early !== null) {
-        this.restore(early, this.early.base);
+        const { base, text } = this.early;
+        if (base === undefined) {
+          // The scene of a link is not the host's file, so Save must not write to that file. Its
+          // text remains in the page's address, so it is not lost if the user never saves it.
+          this.startLink(text);
+          editor.replace(early);
+        } else this.restore(early, base);
         editor.view.dispatch({ selection });
-        // Without a host, the text of a restored link remains in the page's address, so it is not
-        // lost if the user never saves it. It is therefore treated as the initial text of a new
-        // scene, which need not be saved.
-        if (!isServed && this.early.base === undefined) this.at.untouched = this.early.text;
       }
       if (saved && text === null) this.tellGone(reason);
     } else if (isServed && saved) {
@@ -256,7 +319,7 @@ class Files {
     Object.assign(scene, { name, isGone: false, isNew: false, untouched: null });
     if (scene.of === this.at) this.at = this.at.copy = scene;
     // If the host has no file yet, the saved scene becomes the host's.
-    if (this.hosts.isNew) this.hosts = scene;
+    if (this.hosts.isNew) [this.hosts, this.late] = [scene, null];
     say(`${visibleLine(name)} is saved.`);
     this.onSaved(text);
   }
@@ -320,7 +383,8 @@ class Files {
     this.show();
   }
 
-  /** Shows how page and file differ, and asks which to keep. Undo restores the page's text. */
+  /** Shows the differences between the page's text and the file's text, and asks which of the two
+   * to keep. Undo restores the page's text. */
   private ask(theirs: string): void {
     const lines = difference(withLf(theirs), editor.text)
       .map(({ sign, text }) => create("div", CLASSES[sign], `${sign} ${text}`));

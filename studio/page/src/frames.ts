@@ -25,16 +25,18 @@ const COARSE_PIXELS = 320 * 180;
 
 /** Maximum size of a picture: its number of pixels, and the length of each side. All browsers can
  * show pictures of this size; a larger picture is requested at a lower resolution. */
-const MOST = { pixels: 16_000_000, side: 8192 };
+export const MOST = { pixels: 16_000_000, side: 8192 };
 /** Pause in a drag, in ms, before finer pictures are requested. A moving pointer changes the text
  * once per refresh of the screen (17 ms at 60 Hz). With a shorter pause, finer pictures would be
  * requested in the middle of a movement. */
 const HAND_RESTS = 20;
-/** Threshold for the rendering time of the last final picture, in ms. Below it, the next final
- * picture is expected to be as fast, so no sharp picture is requested first. */
+/** Threshold for the rendering time of the last final picture, in ms. Above it, a picture of full
+ * size with one sample per pixel (`sharp`) is requested first, so that the user need not wait for
+ * the final one. */
 const SOON = 200;
 
-/** A requested picture: its text, and the number of the request. */
+/** A requested picture: the number of the request, and its text. The text is null if the picture is
+ * of the last version without errors. */
 interface Asked { doc: Text | null; generation: number }
 
 /** Pictures of the newest text, seen by one camera. */
@@ -47,14 +49,14 @@ export class Frames {
   onRest: () => void = () => {};
   /** The drag that is under way; null if there is none. */
   dragging: object | null = null;
-  /** Promise that settles when the newest text's coarse picture is shown or has failed, so that
-   * what else is requested does not delay it. */
+  /** Promise that settles when the newest text's coarse picture is shown or has failed. Other
+   * requests wait for it, so that they do not delay the picture. */
   coarse: Promise<unknown> = Promise.resolve();
 
   /** The picture that the page shows, with its request. The picture may be of an older text. */
   shown: Shown & Asked | null = null;
 
-  /** `more` are further parameters of the requests. */
+  /** `more` returns parameters that are added to each request, such as the view. */
   constructor(private readonly more: () => object = () => ({})) {}
 
   private generation = 0;
@@ -82,7 +84,8 @@ export class Frames {
   private async refine(asked: Asked, coarse: Promise<Frame | null>): Promise<void> {
     const frame = await coarse;
     if (frame === null) return;
-    // Of a second view, finer pictures are requested when the drag has ended.
+    // For a second view, finer pictures are requested only after the drag, because they would delay
+    // the main picture.
     if (frames.dragging !== null && this !== frames) return;
     if (frames.dragging !== null) await new Promise(resolve => setTimeout(resolve, HAND_RESTS));
     if (asked.generation !== this.generation) return;
@@ -98,7 +101,8 @@ export class Frames {
     return editor.request<Frame | null>("pinhole/frame", { ...MOST, ...this.more(), ...how });
   }
 
-  /** Shows a requested picture when it arrives. Returns it if its text is still the newest. */
+  /** Shows a requested picture when it arrives. Returns the picture. Returns null if the text has
+   * errors, if there is a newer text by then, or if the request fails. */
   private async present(asked: Asked, fineness: Fineness,
     answer: Promise<Frame | null>): Promise<Frame | null> {
     const isNewest = () => asked.generation === this.generation;

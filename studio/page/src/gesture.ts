@@ -62,6 +62,12 @@ export function rewrite(view: EditorView, change: TransactionSpec, past: Extensi
   view.dispatch({ effects: kept.reconfigure(grouped(past)) });
 }
 
+/** Returns the undo history, to be restored by `rewrite` when the text is the same again. */
+export function pastOf(view: EditorView): Extension {
+  const past = view.state.field(historyField, false);
+  return historyField.init(() => past);
+}
+
 /** Changes of the text by a drag or slider. The result depends only on the text at the start and on
  * the last change. If something else changes the text, no further change is made. */
 export class Gesture {
@@ -75,8 +81,7 @@ export class Gesture {
   private readonly past: Extension;
 
   constructor(private readonly view: EditorView) {
-    const past = view.state.field(historyField, false);
-    this.past = historyField.init(() => past);
+    this.past = pastOf(view);
     this.base = this.current = view.state.doc;
     this.written = ChangeSet.empty(this.base.length);
   }
@@ -84,7 +89,8 @@ export class Gesture {
   /** Whether the text has changed only by this gesture. */
   get isAlone(): boolean { return this.view.state.doc === this.current; }
 
-  /** Replaces the last change by another change of the initial text, and scrolls to it. */
+  /** Replaces the gesture's last change by another one, and scrolls to it. `spec` is a change of
+   * the text before the gesture. */
   write(spec: ChangeSpec): void {
     if (this.over || !this.isAlone) return;
     const { base, current, view, written } = this;

@@ -5,60 +5,75 @@ import { inAddress } from "./address";
 import { showPart } from "./dock";
 import { byId, create, createSvg, fromBase64, newestOf, remember, remembered } from "./dom";
 import { editor } from "./editor";
-import { pointedAt } from "./hover";
+import { place, pointedAt } from "./hover";
 import { overlays } from "./overlays";
 import { picture } from "./picture";
-import type { Glass, Point, Samples } from "./protocol";
-import { say } from "./status";
+import { isSuperseded, type Glass, type Point, type Samples } from "./protocol";
+import { say, unsay } from "./status";
 import { setText } from "./visible";
 
-/** Numbers of samples that can be chosen, those of the chart. */
-const COUNTS = [1, 4, 16, 64, 256];
-/** Methods in the order in which a key chooses them. */
-const METHODS = ["regular", "random", "jittered", "n_rooks", "multi_jittered", "hammersley",
-  "halton", "sobol", "scatter"];
-/** Size of the chart, in units of its SVG, and its margins for labels. */
+/** Value of the first entry of the lists of methods and of numbers of samples. It means the scene's
+ * own method or number. */
+const OF_SCENE = "as the scene";
+/** Size of the chart and of the margins around its plot, in units of its SVG. The margins contain
+ * the labels; smaller ones would cut them off. */
 const CHART = { width: 340, height: 160, left: 50, right: 104, top: 8, bottom: 30 };
-/** Error below which the chart has no scale. It is far below what 8 bits can show. */
+/** Error in linear light (from 0 to 1) below which the mean of the samples is called right. Smaller
+ * errors are not shown in the chart. The value is far below a step of 8 bits. */
 const LEAST_ERROR = 1e-5;
+/** Maximum number of colours in the table, one row each. If there are more, the last row is their
+ * sum. */
+const ROWS = 4;
+const NOWHERE = "Point at a pixel of the picture, then press g.";
 
 class PixelGlass {
   /** Column and row of the pixel under the glass; null if the glass is hidden. */
   private pixel: Point | null = null;
-  private data: { glass: Glass; samples: Samples } | null = null;
+  /** Position of the pointer, in screen pixels, when the key g was pressed last; null if it was not
+   * over the picture. */
+  private place: Point | null = null;
+  /** Number of the samples that are shown. */
+  private total = 0;
   private readonly section = byId("glass");
   private readonly method = byId<HTMLSelectElement>("glass-method");
   private readonly count = byId<HTMLSelectElement>("glass-count");
 
   constructor() {
-    for (const name of METHODS) this.method.append(create("option", "", name));
-    for (const count of COUNTS) this.count.append(create("option", "", String(count)));
-    this.method.value = "multi_jittered";
-    this.count.value = "16";
+    this.method.append(new Option("method: scene's", OF_SCENE));
+    this.count.append(new Option("samples: scene's", OF_SCENE));
     for (const choice of [this.method, this.count])
       choice.addEventListener("change", () => this.changed());
     const isOld = (layer: string) => layer === "samples" || layer === "grid";
     const layers = (remembered("layers") ?? "").split(" ");
-    // The glass has taken the place of two layers. If one of them was shown, the glass opens with
-    // the first picture.
+    // Links and settings from earlier versions of the page may contain the layers `samples` and
+    // `grid`, which the glass has replaced. If they do, the glass opens with the first picture.
     if (layers.some(isOld) || (inAddress("show") ?? "").split(",").some(isOld)) {
       remember("layers", layers.filter(it => !isOld(it)).join(" "));
       picture.canvas.addEventListener("pinhole-frame", () => this.pin(), { once: true });
     }
     byId("glass-pin").addEventListener("click", () => this.pin());
     byId("glass-hide").addEventListener("click", () => this.show(null));
-    byId("glass-next").addEventListener("click", () => step(this.method, 1));
-    byId("glass-fewer").addEventListener("click", () => step(this.count, -1));
-    byId("glass-more").addEventListener("click", () => step(this.count, 1));
+    byId("glass-next").addEventListener("click", () => {
+      if (this.pixel === null) return;
+      this.method.selectedIndex = (this.method.selectedIndex + 1) % this.method.options.length;
+      this.changed();
+    });
+    byId("glass-fewer").addEventListener("click", () => this.take((n, now) => n < now, -1));
+    byId("glass-more").addEventListener("click", () => this.take((n, now) => n > now, 0));
   }
 
   /** Puts the pixel under the pointer, or else the middle one, under the glass. If it is there
-   * already, hides the glass. */
+   * already, or if the pointer has not moved since, hides the glass. When the glass appears, the
+   * picture may shrink, so that the pointer is over another pixel. */
   private pin(): void {
     const { size } = picture;
+    const isStill = place !== null && String(place) === String(this.place);
+    this.place = place;
+    if (this.pixel !== null && isStill) return this.show(null);
     const at = pointedAt() ?? (this.pixel === null ? [size[0] / 2, size[1] / 2] : this.pixel);
     const inside = ([0, 1] as const).map(axis => at[axis] >= 0 && at[axis] < size[axis]);
-    if (!inside.every(Boolean)) return say("Point at a pixel of the picture.", "warning");
+    if (!inside.every(Boolean)) return say(NOWHERE, "warning");
+    unsay(NOWHERE);
     const pixel: Point = [Math.floor(at[0]), Math.floor(at[1])];
     this.show(String(pixel) === String(this.pixel) ? null : pixel);
   }
@@ -71,7 +86,21 @@ class PixelGlass {
     this.changed();
   }
 
-  /** Asks anew about the pixel, because the text or what is chosen has changed. */
+  /** Chooses a number of samples from the list: of the numbers for which `isMeant` is true, the
+   * first (`which` is 0) or the last (−1). `isMeant` compares a number with the present one,
+   * `now`. */
+  private take(isMeant: (count: number, now: number) => boolean, which: number): void {
+    if (this.pixel === null) return;
+    const now = this.count.selectedIndex === 0 ? this.total : Number(this.count.value);
+    const counts = [...this.count.options].map(it => Number(it.value));
+    const next = counts.filter(it => isMeant(it, now)).at(which);
+    if (next === undefined) return;
+    this.count.value = String(next);
+    this.changed();
+  }
+
+  /** Requests the data of the pixel again after a change of the text, the method or the number of
+   * samples. */
   changed(): void { if (this.pixel !== null) void this.refresh(); }
 
   private readonly refresh = newestOf<void>(async () => {
@@ -79,19 +108,25 @@ class PixelGlass {
     if (pixel === null || editor.uri === "") return;
     const [width, height] = picture.size;
     if (pixel[0] >= width || pixel[1] >= height) return this.show(null);
-    const [method, count] = [this.method.value, Number(this.count.value)];
-    const glass = await editor.ask<Glass>("pinhole/glass", { pixel });
-    const samples = await editor.ask<Samples>("pinhole/samples", { pixel, method, count });
-    setText(byId("glass-note"), glass && samples ? "" : "The text has errors.");
+    const chosen = (list: HTMLSelectElement) => list.selectedIndex === 0 ? null : list.value;
+    const [method, count] = [chosen(this.method), chosen(this.count)];
+    let why = "The text has errors.";
+    const failed = (error: Error) => (why = isSuperseded(error) ? "" : error.message, null);
+    const glass = await editor.request<Glass | null>("pinhole/glass", { pixel }).catch(failed);
+    const samples = await editor.request<Samples | null>("pinhole/samples",
+      { pixel, method, count: count && Number(count) }).catch(failed);
+    setText(byId("glass-note"), glass && samples ? "" : why);
     if (glass === null || samples === null || this.pixel !== pixel) return;
-    this.data = { glass, samples };
-    await this.draw();
+    if (this.method.options.length === 1) {
+      for (const it of glass.errors) this.method.append(create("option", "", it.method));
+      for (const it of glass.counts) this.count.append(create("option", "", String(it)));
+    }
+    this.total = samples.points.length;
+    await this.draw(pixel, glass, samples, method ?? glass.method);
   });
 
-  private async draw(): Promise<void> {
-    if (this.data === null || this.pixel === null) return;
-    const { glass, samples } = this.data;
-    setText(byId("glass-pixel"), this.pixel.join(", "));
+  private async draw(pixel: Point, glass: Glass, samples: Samples, method: string): Promise<void> {
+    setText(byId("glass-pixel"), pixel.join(", "));
     const canvas = byId<HTMLCanvasElement>("glass-canvas");
     const bitmap = await createImageBitmap(new Blob([fromBase64(glass.png)]));
     canvas.getContext("2d")?.drawImage(bitmap, 0, 0);
@@ -100,15 +135,20 @@ class PixelGlass {
     byId<HTMLElement & SVGElement>("glass-points").replaceChildren(...samples.points.map(
       ([cx, cy], i) => createSvg("circle", { cx, cy, r: radius, fill: samples.colors[i] ?? "" })));
     this.tabulate(glass, samples);
-    byId("glass-chart").replaceChildren(...chart(glass, this.method.value,
-      Number(this.count.value)));
+    byId("glass-chart").replaceChildren(...chart(glass, method, samples.points.length));
   }
 
-  /** Fills the table: what the samples see and what is seen exactly, and both means. */
+  /** Fills the table: for each colour, its fraction of the samples and its exact fraction of the
+   * pixel. Below are the mean of the samples and the exact mean. */
   private tabulate({ seen, mean, color, bound }: Glass, samples: Samples): void {
     const total = samples.colors.length;
-    const rows = seen.slice(0, 4).map(it => {
-      const count = samples.colors.filter(color => color === it.color).length;
+    const listed = seen.slice(0, seen.length > ROWS ? ROWS - 1 : ROWS);
+    const others = seen.slice(listed.length);
+    const rest = { color: "", label: `${others.length} others`,
+      share: others.reduce((sum, it) => sum + it.share, 0) };
+    const rows = (others.length === 0 ? listed : [...listed, rest]).map(it => {
+      const shown = it === rest ? others : [it];
+      const count = samples.colors.filter(is => shown.some(({ color }) => color === is)).length;
       const label = cell(it.label ?? "");
       label.prepend(swatch(it.color));
       return row(label, cell(total === 0 ? "–" : percent(count / total)), cell(percent(it.share)));
@@ -125,15 +165,6 @@ class PixelGlass {
     const error = off < LEAST_ERROR ? "right" : `off by ${off.toPrecision(2)} of 1 in linear light`;
     setText(byId("glass-error"), `The mean of the samples is ${error}${least}.`);
   }
-}
-
-/** Chooses the next entry of a list, or the one before; after the last, the first again. */
-function step(select: HTMLSelectElement, by: number): void {
-  const { length } = select.options;
-  const wraps = select.id === "glass-method";
-  const next = select.selectedIndex + by;
-  select.selectedIndex = wraps ? (next + length) % length : Math.max(0, Math.min(length - 1, next));
-  select.dispatchEvent(new Event("change"));
 }
 
 const percent = (share: number) => `${(100 * share).toFixed(1)} %`;

@@ -9,7 +9,7 @@ import type { Pick, Point } from "./protocol";
 import { point as tell } from "./status";
 
 /** Position of the pointer over the picture, in screen pixels; null if it is elsewhere. */
-let place: Point | null = null;
+export let place: Point | null = null;
 
 picture.stage.addEventListener("pointermove", event => {
   place = event.pointerType === "touch" ? null : picture.local(event);

@@ -4,6 +4,7 @@ import { byId } from "./dom";
 import { Drag } from "./drag";
 import { frames } from "./frames";
 import { picture } from "./picture";
+import { large } from "./projector";
 import type { Point } from "./protocol";
 import { selection } from "./selection";
 import { say } from "./status";
@@ -20,7 +21,7 @@ export const ARROWS: Record<string, Point> =
 
 /** Elements in which keys do not control the picture, because they need all keys, e.g. to type
  * text. */
-const TEXT = "input:not([type=radio],[type=checkbox],[type=range]), [contenteditable=true], dialog";
+const TEXT = "input:not([type=radio],[type=checkbox],[type=range]), [contenteditable=true]";
 const SAVE = ["Control+s", "Control+Shift+s"]; // work in `TEXT`, too
 /** Elements that use arrow keys, Space or Escape themselves, so these keys do not control the
  * picture there. */
@@ -32,8 +33,9 @@ function nameOf({ key, ctrlKey, metaKey, shiftKey }: KeyboardEvent): string {
   return `Control+${shiftKey ? "Shift+" : ""}${key.toLowerCase()}`;
 }
 
-/** Returns the element that a key operates. If the key selects a constraint of drags that is
- * selected already, returns the element `free` instead, which removes the constraint. */
+/** Returns the element that a key operates; undefined if the key has no function. If the key
+ * selects the axis or plane to which drags are restricted already, returns the element `free`
+ * instead, which removes the restriction. */
 function controlOf(key: string): HTMLElement | undefined {
   const controls = [...document.querySelectorAll<HTMLElement>("[data-key]")];
   const found = controls.find(it => it.dataset["key"]?.split(" ").includes(key));
@@ -68,21 +70,27 @@ export function endKeys(): void {
 function down(event: KeyboardEvent): void {
   const { key } = event;
   const arrow = ARROWS[key];
-  const on = event.target as Element;
+  const target = event.target as Element;
   const whole = nameOf(event);
-  const isElsewhere = on.closest(TEXT) !== null && !SAVE.includes(whole);
+  const isInDialog = document.querySelector("dialog[open]") !== null;
+  const isLeaving = whole === "Escape" && large.checked && !isInDialog;
+  const isElsewhere = (isInDialog || target.closest(TEXT) !== null) && !SAVE.includes(whole)
+    && !isLeaving;
   if (event.defaultPrevented || isElsewhere) return;
-  const isOfControl = on.closest(CONTROL) !== null && on.closest("#stage, #outside") === null;
-  if (isOfControl && (arrow !== undefined || key === " " || key === "Escape")) return;
+  const isInPicture = target.closest("#stage, #outside") !== null;
+  const isOfControl = target.closest(CONTROL) !== null && !isInPicture;
+  if (isOfControl && !isLeaving && (arrow !== undefined || key === " " || key === "Escape")) return;
   tools.held = event;
   clearTimeout(pause);
   if (arrow === undefined && !["Escape", "Shift", "Control"].includes(key)) endKeys();
   if (event.altKey || (event.metaKey && arrow !== undefined)) return;
   if (arrow !== undefined) {
-    dragByKey(event, arrow, () => begin(on));
+    dragByKey(event, arrow, () => begin(target));
   } else if (whole === "Escape") {
-    // Escape also cancels a drag that was released but still waits for the server.
+    // Escape cancels the drag that is under way. A drag that was released but still waits for the
+    // server is cancelled, too.
     if (frames.dragging instanceof Drag) frames.dragging.cancel();
+    else if (isLeaving) large.click();
     else selection.select(null);
     drag = null;
   } else if (whole === " ") {
@@ -96,7 +104,7 @@ function down(event: KeyboardEvent): void {
   event.preventDefault();
 }
 
-/** Moves by an arrow key what an earlier one began to drag, or what `start` begins to. */
+/** Moves the dragged handle by an arrow key. If no drag by keys has begun, `start` begins one. */
 export function dragByKey(event: KeyboardEvent, [x, y]: Point, start: () => Drag | null): void {
   clearTimeout(pause);
   const step = event.ctrlKey ? KEY_STEP / 10 : KEY_STEP;

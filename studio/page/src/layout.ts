@@ -4,6 +4,7 @@ import { Compartment } from "@codemirror/state";
 import { EditorView } from "@codemirror/view";
 import { byId, followPointer, remember, remembered } from "./dom";
 import { editor } from "./editor";
+import { panel } from "./panel";
 import { picture } from "./picture";
 import { setText } from "./visible";
 
@@ -15,22 +16,27 @@ const MOST = 80;
 const divider = byId("divider");
 const panes = byId("panes");
 const isNarrow = matchMedia("(max-width: 760px), (max-aspect-ratio: 1)");
+// Side by side and one above the other, text and picture have shares of their own.
+const kept = () => isNarrow.matches ? { key: "text-below", usual: 30 }
+  : { key: "text-share", usual: 42 };
 const share = (percent: number) => {
   const bounded = Math.round(Math.min(MOST, Math.max(LEAST, percent)));
   panes.style.setProperty("--text-share", `${bounded}%`);
   divider.setAttribute("aria-valuenow", String(bounded));
-  remember("text-share", String(bounded));
+  remember(kept().key, String(bounded));
 };
-const orient = () =>
+const orient = () => {
   divider.setAttribute("aria-orientation", isNarrow.matches ? "horizontal" : "vertical");
+  share(Number(remembered(kept().key) ?? kept().usual));
+};
 isNarrow.addEventListener("change", orient);
 orient();
-share(Number(remembered("text-share") ?? 42));
 divider.addEventListener("pointerdown", event => {
   divider.setPointerCapture(event.pointerId);
   event.preventDefault();
   const { left, top, width, height } = panes.getBoundingClientRect();
-  // On a narrow screen, the text is below the picture, so its share is measured from the bottom.
+  // On a narrow screen, the text is below the picture, so the text's part of the height is measured
+  // from the bottom.
   const move = ({ clientX, clientY }: PointerEvent) =>
     share(100 * (isNarrow.matches ? 1 - (clientY - top) / height : (clientX - left) / width));
   const before = Number(divider.getAttribute("aria-valuenow"));
@@ -66,8 +72,9 @@ const closeMenus = (except?: EventTarget | null) => {
 };
 document.addEventListener("pointerdown", ({ target }) => closeMenus(target));
 for (const menu of menus) {
-  menu.addEventListener("keydown", ({ key }) => {
-    if (key !== "Escape") return;
+  menu.addEventListener("keydown", event => {
+    if (event.key !== "Escape" || !menu.open) return;
+    event.preventDefault(); // this Escape does nothing else
     closeMenus();
     menu.querySelector("summary")?.focus();
   });
@@ -76,10 +83,14 @@ for (const menu of menus) {
   });
 }
 
-// The theme follows the system until the user chooses one. Its colours are defined in page.css.
+// The theme is that of the panel, or follows the system until the user chooses one. Its colours are
+// defined in page.css.
 const systemIsDark = matchMedia("(prefers-color-scheme: dark)");
 const editorTheme = new Compartment();
-const colors = () => remembered("theme") ?? (systemIsDark.matches ? "dark" : "light");
+const ofPanel = () =>
+  document.body.matches(".vscode-light, .vscode-high-contrast-light") ? "light" : "dark";
+const colors = () => panel ? ofPanel()
+  : remembered("theme") ?? (systemIsDark.matches ? "dark" : "light");
 const paint = () => {
   const other = colors() === "dark" ? "Light" : "Dark";
   document.documentElement.dataset["theme"] = colors();
@@ -93,5 +104,7 @@ byId("theme").addEventListener("click", () => {
   paint();
 });
 systemIsDark.addEventListener("change", paint);
+if (panel) new MutationObserver(paint)
+  .observe(document.body, { attributeFilter: ["class"] });
 editor.extend(editorTheme.of([]));
 paint();

@@ -4,9 +4,11 @@
 
 import { marked, type Token, type Tokens } from "marked";
 import { inAddress } from "./address";
-import { byId, create, createButton, remember, remembered } from "./dom";
+import { byId, create, createButton, newestOf, remember, remembered } from "./dom";
 import { editor } from "./editor";
 import { files } from "./files";
+import { frames } from "./frames";
+import { overlays } from "./overlays";
 import { Refusal, type Judged, type LessonText } from "./protocol";
 import { sanitized } from "./sanitize";
 import { say } from "./status";
@@ -23,7 +25,7 @@ interface Lesson extends LessonText { title: string; steps: Token[][] }
 /** Lesson 0 is that of the host, if it has one. The others are those of the page. */
 const lessons: (Lesson | null)[] = [null, ...LESSONS.map(read)];
 
-const panel = byId("lesson");
+const section = byId("lesson");
 const title = byId("lesson-title");
 const body = byId("lesson-body");
 const state = byId("lesson-state");
@@ -31,11 +33,15 @@ const [back, on] = [byId<HTMLButtonElement>("lesson-back"), byId<HTMLButtonEleme
 
 let current: Lesson | null = null;
 let step = 0;
-/** Whether the panel shows the list of all lessons. */
+/** Whether the host's lesson is about the user's own scene, and not about that of the lesson. */
+let isAboutOwn = false;
+/** Whether the section shows the list of all lessons. */
 let isList = true;
-/** The engine's last answer about the current lesson. */
+/** The engine's last answer about the current lesson; null if there is none yet. */
 let judged: Judged | null = null;
 const solved = new Set(remembered("solved")?.split("\n"));
+/** What the user has made of the lessons' scenes since the page was loaded. */
+const texts = new Map<Lesson, string>();
 
 /** Splits a lesson's Markdown into its title and its steps, which begin with headings `##`. */
 function read(lesson: LessonText): Lesson {
@@ -43,19 +49,27 @@ function read(lesson: LessonText): Lesson {
   let title = lesson.name;
   for (const token of marked.lexer(lesson.text)) {
     const depth = token.type === "heading" ? (token as Tokens.Heading).depth : 0;
-    if (depth === 1) title = (token as Tokens.Heading).text;
+    if (depth === 1) title = plain((token as Tokens.Heading).tokens);
     else if (depth === 2) steps.push([{ ...token, depth: 3 } as Token]);
     else if (token.type !== "space") steps.at(-1)?.push(token);
   }
   return { ...lesson, title, steps: steps.filter(it => it.length > 0) };
 }
 
-/** Handles the start of the page. `own` is the host's lesson. If the page has another scene than a
- * new one, the lesson is shown beside it; otherwise, the lesson's scene replaces it. */
+/** Returns the text of inline Markdown without its formatting. */
+function plain(tokens: Token[]): string {
+  const html = sanitized(marked.Parser.parseInline(tokens));
+  return Object.assign(create("div"), { innerHTML: html }).textContent;
+}
+
+/** Opens the lesson that the page's address names or, if there is none, the host's lesson `own`.
+ * The scene of the host's lesson replaces the page's scene only if that is a new one (`isNew`).
+ * Otherwise, the lesson is shown beside the page's scene. */
 export function startLessons(own: LessonText | null | undefined, isNew: boolean): void {
   if (own != null) lessons[0] = read(own);
+  isAboutOwn = !isNew;
   if (inAddress(KEY) !== null) followAddress();
-  else if (lessons[0]) open(lessons[0], isNew);
+  else if (lessons[0]) open(lessons[0]);
 }
 
 /** Opens the lesson that the page's address names, or closes the open one if it names none. */
@@ -63,40 +77,65 @@ export function followAddress(): void {
   const named = inAddress(KEY);
   if (named === null) return close();
   const lesson = lessons[Number(named)];
-  if (lesson) open(lesson, true);
+  if (lesson) open(lesson);
   else say(`There is no lesson ${named}.`, "warning");
 }
 
-/** Opens a lesson. `withScene` says whether its scene replaces that of the page. A scene in the
- * page's address stays. */
-function open(lesson: Lesson, withScene: boolean): void {
+/** Opens a lesson. Its scene replaces the page's scene, unless the lesson is about the user's own
+ * scene or the one in the page's address. */
+function open(lesson: Lesson): void {
   if (lesson !== current) {
+    keepText();
     [current, step, judged] = [lesson, 0, null];
-    if (withScene && inAddress("scene") === null) files.start(`${lesson.name}.scn`, lesson.start);
+    if ((isAboutOwn && lesson === lessons[0]) || inAddress("scene") !== null) files.leaveLesson();
+    else {
+      files.startLesson(`${lesson.name}.scn`, lesson.start, texts.get(lesson) ?? lesson.start);
+      overlays.hideLayers();
+    }
   }
   isList = false;
   show();
   lessonChanged();
 }
 
+function keepText(): void {
+  if (current !== null && files.isLesson) texts.set(current, editor.text);
+}
+
+/** Closes the lesson, and shows the user's own scene again. */
 function close(): void {
+  keepText();
+  files.leaveLesson();
   current = null;
   isList = true;
-  panel.hidden = true;
+  section.hidden = true;
   byId("lessons").setAttribute("aria-expanded", "false");
 }
 
-let timer: ReturnType<typeof setTimeout>;
-
-/** Has the conditions judged after a pause in changes of the scene or the lesson. */
-export function lessonChanged(): void {
-  clearTimeout(timer);
-  if (current !== null) timer = setTimeout(() => void judge(), REST);
+/** Removes the lesson from the page's address. */
+function leaveAddress(): void {
+  if (inAddress(KEY) !== null) history.pushState(null, "", location.pathname + location.search);
 }
 
-async function judge(): Promise<void> {
-  const [lesson, { doc }] = [current, editor.view.state];
-  if (lesson === null || editor.uri === "") return;
+files.closeLesson = () => {
+  if (!files.isLesson) return;
+  close();
+  // A link that is being opened stays in the address.
+  if (inAddress("scene") === null) leaveAddress();
+};
+
+let timer: ReturnType<typeof setTimeout>;
+
+/** Requests the judgement of the lesson's conditions, after a pause in changes of the scene or the
+ * lesson, and not during a drag. */
+export function lessonChanged(): void {
+  clearTimeout(timer);
+  if (current !== null) timer = setTimeout(judge, REST, current);
+}
+
+const judge = newestOf(async (lesson: Lesson) => {
+  if (lesson !== current || editor.uri === "" || frames.dragging !== null) return;
+  const { doc } = editor.view.state;
   try {
     const { text, start } = lesson;
     const answer = await editor.request<Judged | null>("pinhole/lesson", { lesson: text, start });
@@ -110,13 +149,13 @@ async function judge(): Promise<void> {
   } catch (error) {
     if (error instanceof Refusal && lesson === current) setText(state, error.message);
   }
-}
+});
 
 /** Shows the current step, or the list of all lessons. */
 function show(): void {
-  panel.hidden = false;
+  section.hidden = false;
   byId("lessons").setAttribute("aria-expanded", "true");
-  panel.classList.toggle("is-list", isList);
+  section.classList.toggle("is-list", isList);
   if (isList || current === null) {
     setText(title, "Lessons");
     body.replaceChildren(list());
@@ -137,8 +176,16 @@ function show(): void {
   showConditions();
 }
 
-const isCheck = (token: Token) =>
-  token.type === "code" && /^check\b/.test((token as Tokens.Code).lang ?? "");
+/** Returns whether the engine reads conditions in the block. It does so only if the fence is at the
+ * start of a line (src/lesson/parser.rs). */
+const isCheck = ({ type, raw }: Token): boolean =>
+  type === "code" && /^(```+|~~~+)[ \t]*check[ \t]*(\n|$)/.test(raw);
+
+/** Returns the lines of a block `check` that are conditions, as `bare` leaves them. */
+const conditionsIn = (token: Token): string[] => (token as Tokens.Code).text.split("\n")
+  .map(line => line.trim()).filter(line => line !== "" && !line.startsWith("//")).map(bare);
+/** Returns a condition and its words without white space and the sign between them. */
+const bare = (line: string) => line.replace(/\s|\/\//g, "");
 
 function list(): HTMLElement {
   const all = create("ol");
@@ -153,19 +200,27 @@ function list(): HTMLElement {
   return all;
 }
 
-/** Opens a lesson by the page's address, so that Back leads to what was there before. */
+/** Opens a lesson by changing the page's address. The browser's Back button then leads to the
+ * page's previous address. */
 function choose(i: number): void {
   history.pushState(null, "", `#${KEY}=${i}`);
   followAddress();
   title.focus();
 }
 
-/** Shows for each condition of the current step whether it holds, and how many of the lesson do. */
+/** Shows for each condition of the current step whether it holds, and how many of them hold. If all
+ * conditions of the lesson hold, says that it is solved. */
 function showConditions(): void {
   if (isList || current === null) return;
-  const before = current.steps.slice(0, step).flat().filter(isCheck).length;
+  // The engine may read a block that the page does not show, such as one in an HTML comment.
+  // Therefore, a block is found by its conditions, not by its number.
+  const asked = (current.steps[step] ?? []).filter(isCheck).map(token => {
+    const wanted = String(conditionsIn(token));
+    return judged?.checks.find(block =>
+      String(block.map(it => bare(it.condition + it.words))) === wanted) ?? [];
+  });
   [...body.querySelectorAll(".conditions")].forEach((block, i) => {
-    block.replaceChildren(...(judged?.checks[before + i] ?? []).map(it => {
+    block.replaceChildren(...(asked[i] ?? []).map(it => {
       const item = create("li", it.holds ? "holds" : "");
       const found = it.start === null ? it.found : `${it.found}, at the start ${it.start}`;
       item.append(create("span", "condition-mark", it.holds ? "✓" : "○"),
@@ -177,14 +232,13 @@ function showConditions(): void {
       return item;
     }));
   });
-  const all = judged?.checks.flat() ?? [];
-  const held = all.filter(it => it.holds).length;
-  const isAsked = body.querySelector(".conditions") !== null;
+  const all = asked.flat();
   setText(state, judged?.holds ? "Solved. ✓"
-    : judged !== null && isAsked ? `${held} of ${all.length} hold` : "");
+    : all.length > 0 ? `${all.filter(it => it.holds).length} of ${all.length} hold` : "");
 }
 
-/** Returns the number of the lesson after the current one. The host's lesson has none. */
+/** Returns the number of the lesson after the current one. Returns null after the last lesson, and
+ * for the host's lesson. */
 function following(): number | null {
   const number = lessons.indexOf(current);
   return number > 0 && number + 1 < lessons.length ? number + 1 : null;
@@ -197,12 +251,14 @@ function turn(by: number): void {
   if (step + by === current?.steps.length) return next === null ? undefined : choose(next);
   step += by;
   show();
-  // A button that is disabled loses the focus.
+  // If the button that was pressed is now disabled, it has lost the focus, so the title gets it.
   if (document.activeElement === document.body) title.focus();
 }
 
 byId("lesson-again").addEventListener("click", () => {
-  if (current !== null) files.start(`${current.name}.scn`, current.start);
+  if (current === null) return;
+  if (files.isLesson) editor.replace(current.start);
+  else files.startLesson(`${current.name}.scn`, current.start, current.start);
 });
 byId("lesson-list").addEventListener("click", () => {
   isList = true;
@@ -212,10 +268,10 @@ byId("lesson-list").addEventListener("click", () => {
 byId("lesson-close").addEventListener("click", () => {
   close();
   byId("lessons").focus();
-  if (inAddress(KEY) !== null) history.pushState(null, "", location.pathname + location.search);
+  leaveAddress();
 });
 byId("lessons").addEventListener("click", () => {
-  if (!panel.hidden) return byId("lesson-close").click();
+  if (!section.hidden) return byId("lesson-close").click();
   show();
   title.focus();
 });

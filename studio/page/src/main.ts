@@ -3,8 +3,9 @@
 import { session, takeToken } from "./address";
 import { redo, redoDepth, undo, undoDepth } from "@codemirror/commands";
 import { keymap } from "@codemirror/view";
+import type { Position } from "vscode-languageserver-protocol";
 import { connection } from "./connection";
-import { fixKey, problemsFollow, publishDiagnostics } from "./diagnostics";
+import { firstError, fixKey, problemsFollow, publishDiagnostics } from "./diagnostics";
 import { byId } from "./dom";
 import { draftChanged, offerDrafts } from "./drafts";
 import { editor } from "./editor";
@@ -19,6 +20,7 @@ import { numberControls } from "./numbers";
 import { listObjects, refreshOutlines } from "./outlines";
 import { outside } from "./outside";
 import { overlays } from "./overlays";
+import { panel } from "./panel";
 import { picture } from "./picture";
 import { feedProjectors, isProjector } from "./projector";
 import "./pointers";
@@ -42,7 +44,11 @@ editor.onUpdate = update => {
     selection.mapped(update.changes);
     mapSliders(update.changes);
   }
-  if (update.selectionSet) selection.cursorMoved();
+  if (update.selectionSet) {
+    selection.cursorMoved();
+    const position = editor.position(update.state.selection.main.head);
+    if (panel && !isFollowing) connection.notify("panel/cursor", { position });
+  }
   byId<HTMLButtonElement>("undo").disabled = undoDepth(update.state) === 0;
   byId<HTMLButtonElement>("redo").disabled = redoDepth(update.state) === 0;
 };
@@ -60,6 +66,7 @@ frames.onState = state => {
 };
 frames.onRest = () => {
   rested();
+  lessonChanged();
   outside.changed();
   if (waiting !== null) void hosted(waiting);
 };
@@ -81,6 +88,8 @@ function changed(): void {
   lessonChanged();
   // Hints, sliders and objects are not updated during a drag.
   if (frames.dragging === null) rested();
+  // Hints of an older text are hidden until new ones have arrived.
+  else byId("editor").dataset["outdated"] = "";
   status.changed();
 }
 
@@ -92,8 +101,9 @@ function rested(): void {
   resting = setTimeout(() => {
     hoverAgain();
     glass.changed();
-    void refreshHints();
-    void refreshSliders();
+    // In a panel, the page's text is hidden.
+    if (!panel) void refreshHints().then(() => delete byId("editor").dataset["outdated"]);
+    if (!panel) void refreshSliders();
     void listObjects();
   }, REST);
 }
@@ -126,7 +136,25 @@ editor.onNotification = (method, params) => {
   if (method === "textDocument/publishDiagnostics") void publishDiagnostics(params);
   if (method === "studio/progress") showProgress(params.share);
   if (method === "studio/file") void hosted(params);
+  if (method === "panel/text" || method === "panel/cursor") follow(params);
 };
+
+/** Whether the page does what the editor around its panel has told it. */
+let isFollowing = false;
+
+/** Takes over the text, or the cursor, of the editor around the panel. */
+function follow({ text, position }: { text?: string; position?: Position }): void {
+  isFollowing = true;
+  if (position) editor.view.dispatch({ selection: { anchor: editor.offset(position) } });
+  if (text !== undefined) {
+    const isFirst = editor.uri === "";
+    editor.replace(text);
+    editor.start();
+    if (isFirst) changed();
+    connection.notify("panel/followed", {});
+  }
+  isFollowing = false;
+}
 
 /** File that the host has sent during a drag. It is handled when the drag ends. */
 let waiting: HostedFile | null = null;
@@ -134,9 +162,9 @@ let waiting: HostedFile | null = null;
 async function hosted(file: HostedFile): Promise<void> {
   await linked;
   const first = !files.isTold;
-  // If new content of the host's file arrives during a drag, it is handled when the drag ends.
-  // While a slider plays, `frames.dragging` is set as in a drag, possibly for a long time, so the
-  // slider is stopped.
+  // If new content of the host's file arrives during a drag, it is handled when the drag ends. A
+  // playing slider also sets `frames.dragging`, possibly for a long time. It is stopped, so that
+  // the new content need not wait for it.
   stop();
   waiting = frames.dragging === null ? null : file;
   if (waiting !== null) return;
@@ -160,9 +188,17 @@ addEventListener("hashchange", async () => {
 byId("undo").addEventListener("click", () => undo(editor.view));
 byId("redo").addEventListener("click", () => redo(editor.view));
 // The editor creates elements only for visible lines, so printing needs a copy of the text.
+const place = () => [picture, outside.picture].forEach(it => it.fit());
 addEventListener("beforeprint", () => {
-  picture.fit();
-  outside.picture.fit();
-  setText(byId("print-text"), `${files.at.name}, ${new Date().toLocaleString()}\n\n${editor.text}`);
+  // On paper, the pictures have other sizes. They are placed before paper is laid out.
+  document.body.classList.add("paper");
+  byId("dock").classList.toggle("without-room", byId("dock").clientWidth === 0);
+  place();
+  setText(byId("print-text"), [`${files.at.name}, ${new Date().toLocaleString()}`,
+    ...firstError(), "", editor.text].join("\n"));
+});
+addEventListener("afterprint", () => {
+  document.body.classList.remove("paper");
+  requestAnimationFrame(place); // until then, the page is laid out as paper
 });
 if (!isProjector) connection.open();

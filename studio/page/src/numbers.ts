@@ -11,7 +11,7 @@ import { NUMBER } from "./language";
 import type { Limits } from "./protocol";
 
 /** A number in the text, from its sign at `from` to `to`. Its unit, if any, reaches to `end`. */
-interface Literal { from: number; to: number; end: number; value: number }
+export interface Literal { from: number; to: number; end: number; value: number }
 
 /** Pixels by which the pointer moves sideways to change the number by one step. With fewer pixels,
  * single steps would be hard to hit; with more, a drag would not reach far. */
@@ -40,6 +40,13 @@ function limitsOf(at: number): Promise<Limits | null> {
   return editor.ask("pinhole/limits", { position: editor.position(at) });
 }
 
+/** Returns a value as it is written in the text: rounded, and clamped to the number's limits. */
+export function written({ least, most, decimals }: Limits, value: number): string {
+  const right = Math.min(most ?? Infinity, Math.max(least ?? -Infinity, value));
+  // Adding 0 turns −0 into 0, so that no minus sign is written before a zero.
+  return String(Number(right.toFixed(decimals)) + 0);
+}
+
 /** Changes a number within its limits, so that a single Undo reverts all the changes. */
 export class Turn {
   readonly gesture = new Gesture(editor.view);
@@ -52,10 +59,7 @@ export class Turn {
     const { from, to } = this.literal;
     const limits = await this.limits;
     if (limits === null) return;
-    const { least, most, step, decimals } = limits;
-    const right = Math.min(most ?? Infinity, Math.max(least ?? -Infinity, value(step)));
-    // Adding 0 turns −0 into 0, so that no minus sign is written before a zero.
-    this.gesture.write({ from, to, insert: String(Number(right.toFixed(decimals)) + 0) });
+    this.gesture.write({ from, to, insert: written(limits, value(limits.step)) });
   }
 
   end(): void { void this.limits.then(() => this.gesture.end()); }
@@ -150,7 +154,7 @@ function createSlider(): TooltipView {
   });
   const less = createButton("−", "", () => turnOnce(literal(), -1), "Less");
   const more = createButton("+", "", () => turnOnce(literal(), 1), "More");
-  const grip = create("span", "grip", "↔");
+  const grip = create("span", "grip", "↔ drag");
   grip.title = "Drag to the side; in the text, drag a number with the Alt key";
   grip.addEventListener("pointerdown", event => scrub(event, literal()));
   dom.append(less, range, more, grip);

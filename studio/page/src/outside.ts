@@ -8,27 +8,31 @@ import { byId, createSvg, followPointer, newestOf, remember, remembered } from "
 import { Drag, dragWith, type Held } from "./drag";
 import { editor } from "./editor";
 import { files } from "./files";
-import { Frames, frames } from "./frames";
+import { Fingers } from "./fingers";
+import { Frames, frames, MOST } from "./frames";
 import { ARROWS, dragByKey, endKeys } from "./keys";
 import { drawLines, overlays } from "./overlays";
 import { Picture, picture as main } from "./picture";
 import { grab } from "./pointers";
-import type { CameraLine, Overlays, Point, Vector, View } from "./protocol";
+import type { CameraLine, Frame, Overlays, Point, Polyline, Vector, View }
+  from "./protocol";
 import { handlesOf, placeHandles, selection, type OwnedHandle } from "./selection";
 import { tools } from "./tools";
 import { setText } from "./visible";
 
-/** Samples of a pixel when nothing moves; enough for smooth edges, and soon rendered. */
+/** Samples per pixel of this view when nothing moves. With fewer samples, edges would be jagged;
+ * more samples would take longer. */
 const SAMPLES = 16;
 /** Maximum number of device pixels for a pixel of the page. More would not be seen. */
 const SHARPEST = 2;
 /** Greatest angle between the level and the direction of the view, in radians: a little less than a
  * right angle, at which the picture's top would not be defined. */
 const STEEPEST = Math.PI / 2 - 1e-3;
-/** Time, in ms, after which a coarse picture is late. During a drag, no further one is requested
- * then until the drag ends, because the main picture would have to wait for it. */
+/** Maximum time, in ms, that a coarse picture may take during a drag. After a slower one, this view
+ * gets no new picture until the drag ends, because the main picture would have to wait for it. */
 const LATE = 40;
-/** Angle by which an arrow key turns the view, in heights of the picture. */
+/** Angle by which an arrow key turns the view. It is given as a movement of the pointer, in heights
+ * of the picture; a whole height turns the view by 180°. */
 const KEY_TURN = 1 / 24;
 
 const minus = (a: Vector, b: Vector): Vector => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -38,31 +42,55 @@ const plus = (a: Vector, b: Vector, by = 1): Vector =>
 
 /** Order in which the lines of the camera are drawn; the last one is on top. */
 const LINES: CameraLine[] = ["frustum", "far", "near", "axis", "rays", "window", "up", "ray"];
-/** Handles whose names are always shown, on the given side. */
+/** Class of the view when it is drawn for an SVG, as it is printed. */
+const INK = "ink";
+/** Properties of lines and labels that an SVG of the view keeps. */
+const STYLE = ["display", "fill", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin",
+  "paint-order", "font-family", "font-size"];
+/** Handles whose names are always shown, on the given side; the last three only in ink. */
 const NAMED: Record<string, "above" | "below"> = { eye: "above", lookat: "below",
-  direction: "below", d: "below", view_height: "above", fov: "above", hfov: "above" };
+  direction: "below", d: "below", view_height: "above", fov: "above", hfov: "above",
+  up: "above", near: "below", far: "below" };
+
+/** Distances of labels from their handles: above and below. */
+const SIDES = ["-1.1em", "1.9em"];
+/** Width of an SVG of the view, in its own units: that of a printed page in CSS pixels, so that
+ * labels are as large as on paper. */
+const SVG_WIDTH = 680;
+
+/** Returns the handles of the scene's camera. */
+const ofCamera = ({ camera }: Overlays): OwnedHandle[] =>
+  camera?.handles.map(it => ({ ...it, object: null, owner: "Outside, camera" })) ?? [];
 
 class Outside {
   readonly picture = new Picture(byId("outside"), byId<HTMLCanvasElement>("outside-canvas"), 0);
   /** The camera of the view; null until the server has chosen it. */
   view: View | null = null;
-  /** Direction from which the server chooses the view; undefined for the usual one. */
+  /** Direction from which the server chooses the view; undefined if the server also chooses the
+   * direction. */
   private from: Vector | undefined;
   /** Whether the user has chosen the view, so that a link contains it. */
   private isChosen = false;
   private data: Overlays | null = null;
   private isTrue = false;
+  /** Whether the eye and the window have been in the picture since the user last moved the view. */
+  private isInView = false;
   private pointed: Point | null = null;
   /** Whether a new picture is needed, and not only new lines. */
   private needsFrame = false;
-  /** Scene of the view. The view of another one is chosen anew. */
+  /** Scene that the view shows. If the page shows another scene, the server chooses a new view. */
   private scene = files.at;
   private begin = 0;
   private took = 0;
   private readonly svg = document.querySelector("#outside-lines") as SVGElement;
   private readonly handles = byId("outside-handles");
-  private readonly frames = new Frames(() => ({ view: this.view, samples: SAMPLES }));
+  /** The view whose picture was requested last. Unlike `view`, it is not null while the server
+   * chooses another view: a request without a view would be about the main picture. */
+  private framed: View | null = null;
+  private readonly frames = new Frames(() => ({ view: this.framed, samples: SAMPLES }));
   private readonly box = byId<HTMLInputElement>("outside-shown");
+  private readonly fingers = new Fingers(this.picture, factor => this.zoom(1 / factor),
+    by => this.pan(by));
 
   constructor() {
     const { box, picture, picture: { stage } } = this;
@@ -70,11 +98,14 @@ class Outside {
     box.addEventListener("change", () => this.show(box.checked));
     byId("outside-hide").addEventListener("click", () => this.show(false));
     showPart(byId("outside-part"), box.checked);
-    this.open();
-    addEventListener("hashchange", () => this.open());
+    this.openAddressed();
+    addEventListener("hashchange", () => this.openAddressed());
     picture.onView = () => {
       this.draw();
-      if (this.view === null || String(this.size) !== String(this.view.size)) this.changed();
+      if (this.view !== null && String(this.size) === String(this.view.size)) return;
+      // A view that the user has not chosen is chosen anew, so that all of it is seen.
+      if (!this.isChosen) this.view = null;
+      this.changed();
     };
     picture.onWheel = turned => this.zoom(2 ** turned);
     this.frames.onShow = shown => {
@@ -89,11 +120,10 @@ class Outside {
     stage.addEventListener("pointerdown", event => this.press(event));
     stage.addEventListener("keydown", event => this.key(event));
     stage.addEventListener("focusout", () => endKeys());
-    stage.addEventListener("contextmenu", event => event.preventDefault());
   }
 
-  /** Takes the view from the page's address, if it has one. */
-  private open(): void {
+  /** Shows the view that the page's address contains, if it contains one. */
+  private openAddressed(): void {
     const numbers = inAddress("view")?.split(",").map(Number) ?? [];
     if (numbers.length !== 6 || !numbers.every(Number.isFinite)) return;
     const [a = 0, b = 0, c = 0, d = 0, e = 0, f = 0] = numbers;
@@ -132,14 +162,15 @@ class Outside {
     void this.refresh();
   }
 
-  /** Draws the ray through a point of the main picture; if `at` is null, none. */
+  /** Draws the ray through the point `at` of the main picture. If `at` is null, draws no ray. */
   point(at: Point | null): void {
     if (String(at) === String(this.pointed)) return;
     this.pointed = at;
     void this.refresh();
   }
 
-  /** Lets the server choose the view, from the direction `from` or from the usual one. */
+  /** Lets the server choose the view from the direction `from`. If `from` is undefined, the server
+   * also chooses the direction. */
   private look(from: Vector | undefined): void {
     this.view = null;
     this.from = from;
@@ -147,7 +178,8 @@ class Outside {
     this.changed();
   }
 
-  /** Requests the lines after the main picture has arrived, and then the picture. */
+  /** Waits for the main picture, and then requests the lines of this view. Requests the picture of
+   * this view last. */
   readonly refresh = newestOf<void>(async () => {
     for (let its; its !== frames.coarse; await its) its = frames.coarse;
     if (connection.state !== "open" || !this.isShown || editor.uri === "") return;
@@ -155,61 +187,122 @@ class Outside {
       this.view = null;
       this.from = undefined;
       this.isChosen = false;
+      if (files.at.from === "link") this.openAddressed();
     }
     this.scene = files.at;
     const { doc } = editor.view.state;
-    const asked = this.view && (this.view = { ...this.view, size: this.size });
-    const answer = await editor.ask<Overlays>("pinhole/overlays", { only: this.objects,
-      point: this.pointed, view: asked ?? { from: this.from, size: this.size } });
+    const { size } = this;
+    const asked = this.view && (this.view = { ...this.view, size });
+    const only = [selection.index, overlays.hovered].filter(it => it !== null);
+    const answer = await editor.ask<Overlays>("pinhole/overlays", { only,
+      point: this.pointed, view: asked ?? { from: this.from, size } });
     this.isTrue = answer !== null;
     if (answer !== null && editor.view.state.doc === doc) {
       this.data = answer;
-      if (this.view === asked) this.view = answer.view ?? null;
+      // A view that was chosen for another size is not used; another request follows.
+      const fits = asked !== null || String(size) === String(this.size);
+      if (this.view === asked && fits) this.view = answer.view ?? null;
+      // If a change of the text has moved the camera out of the picture, the view is chosen again.
+      // If the user has turned it, its direction is kept. A drag would be disturbed by that, so it
+      // must have ended.
+      if (this.seesCamera) this.isInView = true;
+      else if (this.isInView && this.view !== null && frames.dragging === null) {
+        this.isInView = false;
+        if (this.isChosen) this.from = minus(this.view.eye, this.view.lookat);
+        this.view = null;
+        return this.changed();
+      }
     }
-    setText(byId("outside-note"), this.isTrue ? "" : "The text has errors.");
+    const isBroken = !this.isTrue && connection.state === "open";
+    setText(byId("outside-note"), isBroken ? "The text has errors." : "");
     this.draw();
     const isLate = frames.dragging !== null && this.took > LATE;
     if (!this.needsFrame || this.view === null || isLate) return;
     this.needsFrame = false;
+    this.framed = this.view;
     this.begin = performance.now();
     this.frames.changed();
   });
 
-  /** Objects whose outlines are drawn. */
-  private get objects(): number[] {
-    return [selection.index, overlays.hovered].filter(it => it !== null);
+  /** Whether the handles of the eye and of the window are in the picture. */
+  private get seesCamera(): boolean {
+    const of = this.data?.camera?.handles.filter(({ handle }) => /^(eye|d)$/.test(handle)) ?? [];
+    const isInside = (at: Point) => at.every((it, axis) => it >= 0 && it <= (this.size[axis] ?? 0));
+    return of.length > 0 && of.every(({ at }) => at !== null && isInside(at));
   }
 
   draw(): void {
-    const { data, picture, svg } = this;
+    const { data, picture, owned, svg } = this;
+    placeHandles(this.handles, picture, owned);
     svg.replaceChildren();
-    const camera = data?.camera;
-    const handles = this.owned;
-    placeHandles(this.handles, picture, handles);
-    if (!data || !camera) return;
-    const group = createSvg("g", { transform: picture.matrix });
-    svg.append(group);
+    if (data !== null) this.drawData(svg, data, owned, it => picture.toScreen(it));
+  }
+
+  /** Draws `data` into `svg`. `place` converts its points to those of `svg`. */
+  private drawData(svg: SVGElement, { camera, objects }: Overlays,
+    handles: readonly OwnedHandle[], place: (point: Point) => Point): void {
+    if (camera === undefined) return;
+    const draw = (name: string, lines: readonly Polyline[]) =>
+      drawLines(svg, name, lines.map(line => line.map(place)));
     // What is dragged is highlighted, in whichever picture it is dragged.
     const { dragging } = frames;
     const held = dragging instanceof Drag ? dragging.held : null;
     svg.toggleAttribute("data-camera-held", held !== null && held.object === null);
-    for (const { index, outline } of this.isTrue ? data.objects : []) {
+    for (const { index, kind, outline } of this.isTrue ? objects : []) {
       const isHeld = held?.object === index ? " held" : "";
-      drawLines(group, `outline ${index === selection.index ? "selected" : "hovered"}${isHeld}`,
-        outline);
+      const state = index === selection.index ? "selected" : "hovered";
+      draw(`outline ${kind} ${state}${isHeld}`, outline);
     }
-    for (const name of LINES) drawLines(group, `camera ${name}`, camera.lines[name] ?? []);
-    for (const [x, y] of camera.met.map(it => picture.toScreen(it)))
+    for (const name of LINES) draw(`camera ${name}`, camera.lines[name] ?? []);
+    for (const [x, y] of camera.met.map(place))
       svg.append(createSvg("circle", { cx: x, cy: y, r: 3.5, class: "met" }));
+    const taken: DOMRect[] = [];
     for (const { at, label, object, handle } of handles) {
       const side = object === null ? NAMED[handle] : undefined;
       if (at === null || side === undefined) continue;
-      const [x, y] = picture.toScreen(at);
-      const text = createSvg("text", { x, y: y + (side === "above" ? -13 : 23), class: "mark",
-        "text-anchor": "middle" });
+      const [x, y] = place(at);
+      const text = createSvg("text", { x, y, class: `mark ${handle}`, "text-anchor": "middle" });
       setText(text, label);
-      svg.append(text);
+      svg.append(createSvg("circle", { cx: x, cy: y, r: 3.5, class: "dot" }), text);
+      // A label that would overlap an earlier one moves to the other side of its handle. If it
+      // would overlap there, too, it is left out.
+      const isFree = (dy: string) => {
+        text.setAttribute("dy", dy);
+        const box = DOMRect.fromRect(text.getBBox());
+        return taken.every(it => box.left >= it.right || box.right <= it.left
+          || box.top >= it.bottom || box.bottom <= it.top) && taken.push(box) > 0;
+      };
+      if (!(side === "above" ? SIDES : [...SIDES].reverse()).some(isFree)) text.remove();
     }
+  }
+
+  /** Returns the view in ink, with all outlines, as the text of an SVG. Its size does not depend on
+   * that of the page. Fails if there is no picture of the text. */
+  async asSvg(): Promise<string> {
+    const { picture: { canvas, stage }, size: [across, down] } = this;
+    const [width, height] = [SVG_WIDTH, Math.round(SVG_WIDTH * down / across)];
+    const view = this.view && { ...this.view, size: [width, height] };
+    const data = view && await editor.request<Overlays | null>("pinhole/overlays",
+      { only: null, point: null, view });
+    const frame = view && await editor.request<Frame | null>("pinhole/frame", { ...MOST,
+      view: { ...view, size: [SHARPEST * width, SHARPEST * height] }, samples: SAMPLES });
+    if (!data || !frame) throw new Error("The text has errors: it has no view from outside.");
+    const whole = createSvg("svg", { width, height, viewBox: `0 0 ${width} ${height}` });
+    stage.classList.add(INK);
+    stage.append(whole);
+    this.drawData(whole, data, ofCamera(data), it => it);
+    for (const shape of whole.children) {
+      const style = getComputedStyle(shape);
+      for (const name of STYLE) shape.setAttribute(name, style.getPropertyValue(name));
+    }
+    // A white sheet makes the picture pale. Some programs ignore the opacity of pictures.
+    const pale = 1 - Number(getComputedStyle(canvas).opacity);
+    whole.prepend(createSvg("image", { width, height, href: `data:image/png;base64,${frame.png}` }),
+      createSvg("rect", { width, height, fill: "#ffffff", "fill-opacity": pale }));
+    whole.remove();
+    stage.classList.remove(INK);
+    this.changed(); // the request for the picture may have replaced another one
+    return new XMLSerializer().serializeToString(whole);
   }
 
   /** Handles of the scene's camera, and the first one of the selected object. */
@@ -217,8 +310,7 @@ class Outside {
     const { data } = this;
     if (!data?.camera || !this.isTrue) return [];
     const of = data.objects.filter(it => it.index === selection.index);
-    return [...data.camera.handles.map(it => ({ ...it, object: null, owner: "Outside, camera" })),
-      ...of.flatMap(it => handlesOf(it).slice(0, 1))
+    return [...ofCamera(data), ...of.flatMap(it => handlesOf(it).slice(0, 1))
         .map(it => ({ ...it, owner: `Outside, ${it.owner}` }))];
   }
 
@@ -230,23 +322,28 @@ class Outside {
   }
 
   private press(event: PointerEvent): void {
-    const { picture, picture: { stage } } = this;
-    stage.setPointerCapture(event.pointerId);
-    stage.focus({ preventScroll: true });
-    endKeys();
+    const { fingers, picture, picture: { stage } } = this;
+    if (!fingers.press(event)) return;
     tools.held = event;
     const at = picture.toPicture(picture.local(event));
     const held = this.held(event.target as Element);
-    if (held !== null && event.button === 0) return void dragWith(event, at, () => held, this);
+    if (held !== null && event.button === 0) {
+      fingers.giveUp = dragWith(event, at, () => held, this);
+      return;
+    }
     // The left button drags an object if the pointer is over one, and turns the view otherwise.
+    // `isObject` is null until the server has answered which object is there.
     let isObject = event.button === 0 ? null : false;
     const hold = async () => {
-      const found = await grab(at, this.view, it => it !== null && it.kind !== "checkerboard");
+      const found = await fingers.isAlone
+        ? await grab(at, this.view, it => it !== null && it.kind !== "checkerboard") : null;
       isObject = found !== null;
+      // Turning the view does not change the text, so it is no drag.
+      if (!isObject) cancel();
       return found;
     };
     const cancel = isObject === null ? dragWith(event, at, hold, this) : () => {};
-    const before = this.view;
+    const before = { view: this.view, isChosen: this.isChosen, isInView: this.isInView };
     let last: Point = [event.clientX, event.clientY];
     const move = ({ clientX, clientY, shiftKey }: PointerEvent) => {
       if (isObject !== false) return;
@@ -255,9 +352,9 @@ class Outside {
       if (event.button === 1 || shiftKey) this.pan(by);
       else this.turn([by[0] / stage.clientHeight, by[1] / stage.clientHeight]);
     };
-    followPointer(event, move, () => {}, () => {
+    fingers.giveUp = followPointer(event, move, () => {}, () => {
       cancel();
-      this.view = before;
+      Object.assign(this, before);
       this.changed();
     });
   }
@@ -266,7 +363,8 @@ class Outside {
     const arrow = ARROWS[event.key];
     const held = this.held(event.target as Element);
     tools.held = event;
-    if (event.altKey || event.metaKey) return;
+    // Control with + − 0 is the browser's own zoom.
+    if (event.altKey || event.metaKey || (event.ctrlKey && arrow === undefined)) return;
     if (arrow !== undefined && held !== null) {
       dragByKey(event, arrow, () => new Drag(held.at, () => held, this));
     } else if (arrow !== undefined) this.turn([arrow[0] * KEY_TURN, arrow[1] * KEY_TURN]);
@@ -277,11 +375,13 @@ class Outside {
     event.preventDefault();
   }
 
-  /** Sets the view as the user has moved it. */
+  /** Moves the view to an eye and a `lookat` point that the user has chosen. Does nothing if a
+   * coordinate is not finite. */
   private move(eye: Vector, lookat: Vector): void {
     if (this.view === null || ![...eye, ...lookat].every(Number.isFinite)) return;
     this.view = { ...this.view, eye, lookat };
     this.isChosen = true;
+    this.isInView = false;
     this.changed();
   }
 

@@ -50,6 +50,13 @@ class OverlayLayer {
     this.onNeed();
   }
 
+  /** Hides all layers until the user shows one again. A reload shows those that are remembered. */
+  hideLayers(): void {
+    if (inAddress("show") !== null) return;
+    for (const box of boxes) box.checked = false;
+    this.draw();
+  }
+
   /** Names of the layers that are shown, separated by commas. */
   get shownLayers(): string { return boxes.filter(it => it.checked).map(it => it.name).join(); }
 
@@ -68,7 +75,7 @@ class OverlayLayer {
     if (hovered !== null && !this.data?.objects.some(it => it.index === hovered)) this.onNeed();
   }
 
-  /** Marks a pixel, or none. */
+  /** Marks a pixel. If `pixel` is null, removes the mark. */
   pin(pixel: Point | null): void {
     this.pinned = pixel;
     this.draw();
@@ -113,7 +120,7 @@ class OverlayLayer {
     const shape = out > 1 ? { d: "M-16 0H0M-7 -6L0 0L-7 6", transform:
       `translate(${atX} ${atY}) rotate(${turn})` }
       : { d: `M${x - 7} ${y}H${x + 7}M${x} ${y - 7}V${y + 7}`, transform: "" };
-    const isRight = atX > width - 200;
+    const isRight = atX > middleX;
     const label = createSvg("text", { x: atX + (isRight ? -12 : 12), class: `mark ${name}`,
       y: Math.max(16, atY - 9), "text-anchor": isRight ? "end" : "start" });
     setText(label, `${text} (${point.map(it => Math.round(it)).join(", ")})`);

@@ -82,11 +82,16 @@ export class Picture {
 
   /** Zooms so that the whole picture is visible, as large as possible. */
   fit(): void {
+    this.center(this.fitting);
+    this.fitted = true;
+  }
+
+  /** Zoom at which the whole picture is visible, as large as possible. */
+  get fitting(): number {
     const { clientWidth, clientHeight } = this.stage;
     const [width, height] = this.size;
-    this.center(Math.max(0.01, Math.min((clientWidth - 2 * this.margin) / width,
-      (clientHeight - 2 * this.margin) / height)));
-    this.fitted = true;
+    return Math.max(0.01, Math.min((clientWidth - 2 * this.margin) / width,
+      (clientHeight - 2 * this.margin) / height));
   }
 
   /** Zooms so that one pixel of the picture is one pixel of the screen. */

@@ -3,7 +3,8 @@
 
 import { dragWith, type Held, type Surface } from "./drag";
 import { editor } from "./editor";
-import { endKeys, space } from "./keys";
+import { Fingers } from "./fingers";
+import { space } from "./keys";
 import { picture } from "./picture";
 import type { Overlays, Pick, Point, SceneObject } from "./protocol";
 import { selection } from "./selection";
@@ -12,35 +13,29 @@ import { tools, type Tool } from "./tools";
 /** Tools that the middle (1) and the right (2) mouse button use, whichever tool is chosen. */
 const BUTTONS: Record<number, Tool> = { 1: "pan", 2: "orbit" };
 
-/** Cancels the drag that is under way with a mouse button or a finger. */
-let giveUp = (): void => {};
-/** Last position of each pressed pointer, by its id. */
-const places = new Map<number, Point>();
-const { stage } = picture;
-
-stage.addEventListener("pointerdown", press);
-stage.addEventListener("pointermove", shift);
-for (const end of ["pointerup", "pointercancel"] as const) stage.addEventListener(end, event =>
-  places.delete(event.pointerId));
-stage.addEventListener("contextmenu", event => event.preventDefault());
+/** Zoom before two fingers changed it. */
+let before = 1;
+// Fingers shrink the picture at most until it is visible as a whole. The zoom follows from their
+// total movement, so that what exceeds the limit is not forgotten between two events.
+const fingers = new Fingers(picture, (factor, about, total) => {
+  if (total === factor) before = picture.zoom;
+  const zoom = Math.max(before * total, Math.min(before, picture.fitting));
+  picture.zoomBy(zoom / picture.zoom, about);
+}, by => picture.panBy(...by));
+picture.stage.addEventListener("pointerdown", press);
+fingers.onAlone = (by, { buttons }) => { if (space && buttons === 1) picture.panBy(...by); };
 
 function press(event: PointerEvent): void {
-  const at = picture.local(event);
-  places.set(event.pointerId, at);
-  stage.setPointerCapture(event.pointerId);
-  stage.focus({ preventScroll: true }); // touch would leave the focus in the text
-  endKeys();
-  // A second finger cancels the drag of the first. Both fingers together zoom.
-  if (places.size > 1) return giveUp();
-  if (space) return;
+  if (!fingers.press(event) || space) return;
   tools.held = event;
-  const start = picture.toPicture(at);
+  const start = picture.toPicture(picture.local(event));
   const tool = BUTTONS[event.button] ?? tools.tool;
   const button = (event.target as Element).closest(".handle");
   const held = button === null ? null : selection.held(button);
-  if (held !== null && event.button === 0) giveUp = dragWith(event, start, () => held);
-  else if (tool === "move") giveUp = dragWith(event, start, () => grab(start));
-  else giveUp = dragWith(event, start, () => ({ object: null, handle: tool, at: start }));
+  const isOfHandle = held !== null && event.button === 0;
+  const take = async () => await fingers.isAlone ? grab(start) : null;
+  fingers.giveUp = dragWith(event, start, isOfHandle ? () => held : tool === "move" ? take
+    : () => ({ object: null, handle: tool, at: start }));
 }
 
 /** Selects the object at `point` and returns its centre as a handle. Returns null if there is no
@@ -60,20 +55,4 @@ export async function grab(point: Point, view: Surface["view"] = null,
   const middle = handles?.find(it => it.handle === "center" || it.handle === "centroid");
   if (!middle?.at) return null;
   return { object: object.index, handle: middle.handle, at: middle.at };
-}
-
-/** Pans the picture with one pressed pointer; pans and zooms it with two. */
-function shift(event: PointerEvent): void {
-  const before = places.get(event.pointerId);
-  if (before === undefined) return;
-  const at = picture.local(event);
-  const other = [...places].find(([id]) => id !== event.pointerId)?.[1];
-  if (other !== undefined) {
-    const distance = ([x, y]: Point) => Math.max(1, Math.hypot(x - other[0], y - other[1]));
-    picture.zoomBy(distance(at) / distance(before), other);
-    picture.panBy((at[0] - before[0]) / 2, (at[1] - before[1]) / 2);
-  } else if (space && event.buttons === 1) {
-    picture.panBy(at[0] - before[0], at[1] - before[1]);
-  }
-  places.set(event.pointerId, at);
 }

@@ -1,4 +1,5 @@
-// A window for a projector, which shows only the picture. The page's tab sends it the pictures.
+// What a class sees. The page itself can be large, without header and footer. A second window shows
+// only the picture; the page's tab sends it the pictures.
 
 import { inAddress } from "./address";
 import { byId, remember, remembered } from "./dom";
@@ -9,28 +10,65 @@ const KEY = "projector";
 const of = inAddress(KEY);
 export const isProjector = of !== null;
 
-/** Name of the broadcast channel that this tab used before it was reloaded; null if no projector
- * window has requested pictures from this tab. A reloaded tab uses the same channel, so that open
+/** Kinds of messages between tabs and projector windows. A window says that it is `ready` for
+ * pictures, or `gone`. A tab that was just loaded asks who is `there`: windows answer `ready`. A
+ * tab that uses the channel already answers `taken`, because the loaded tab is a copy of it. */
+type Kind = "ready" | "gone" | "there" | "taken" | "picture";
+interface Message { kind: Kind; from: string; shown?: Shown }
+
+const unique = () => `${Date.now()}-${Math.random().toString(36).slice(2)}`;
+const own = unique();
+/** Projector windows that want pictures from this tab. */
+const windows = new Set<string>();
+
+/** Name of the broadcast channel. A reloaded tab uses the same one as before, so that open
  * projector windows continue to get pictures. */
-const known = remembered(KEY, "sessionStorage");
-const name = of ?? known ?? `${Date.now()}-${Math.random().toString(36).slice(2)}`;
-const channel = new BroadcastChannel(`pinhole-${name}`);
-/** Whether a projector window has requested pictures from this tab. */
-let isFed = known !== null;
+let name = of ?? remembered(KEY, "sessionStorage") ?? unique();
+let channel = join();
 
-/** Sends a picture to the projector windows, if any window has requested pictures. */
-export function feedProjectors(shown: Shown): void { if (isFed) channel.postMessage(shown); }
+function join(): BroadcastChannel {
+  const joined = new BroadcastChannel(`pinhole-${name}`);
+  joined.onmessage = ({ data }: MessageEvent<Message>) => (isProjector ? project : feed)(data);
+  return joined;
+}
 
-if (isProjector) {
-  document.body.classList.add("projector");
-  channel.onmessage = ({ data }: MessageEvent<Shown>) => picture.show(data);
-  channel.postMessage("ready");
-} else channel.onmessage = async () => {
-  isFed = true;
+const send = (kind: Kind, shown?: Shown) => channel.postMessage({ kind, from: own, shown });
+
+/** Sends a picture to the projector windows, if there are any. */
+export function feedProjectors(shown: Shown): void { if (windows.size > 0) send("picture", shown); }
+
+function project({ kind, shown }: Message): void {
+  if (shown) picture.show(shown);
+  if (kind === "there") send("ready");
+}
+
+async function feed({ kind, from }: Message): Promise<void> {
+  if (kind === "gone") windows.delete(from);
+  if (kind === "there") send("taken");
+  if (kind === "taken") {
+    channel.close();
+    windows.clear();
+    name = unique();
+    channel = join();
+  }
+  if (kind !== "ready") return;
+  windows.add(from);
   remember(KEY, name, "sessionStorage");
   const { canvas, canvas: { dataset }, size, isEmpty } = picture;
   if (!isEmpty) feedProjectors({ bitmap: await createImageBitmap(canvas), size,
     fineness: dataset["fineness"] as Fineness, version: Number(dataset["version"]) });
-};
+}
+
+document.body.classList.toggle("projector", isProjector);
+addEventListener("pagehide", () => send("gone"));
+send(isProjector ? "ready" : "there");
+
+/** Whether the page is large, for which large.css cares. A reloaded tab stays so. */
+export const large = byId<HTMLInputElement>("large");
+large.checked = remembered("large", "sessionStorage") === "true";
+large.addEventListener("change", () =>
+  remember("large", String(large.checked), "sessionStorage"));
+
+byId("large-end").addEventListener("click", () => large.click());
 byId("projector").addEventListener("click", () =>
   open(`${location.pathname}#${KEY}=${name}`, "_blank", "popup,width=1280,height=720"));

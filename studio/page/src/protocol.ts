@@ -28,7 +28,7 @@ export interface Overlays {
   vanishing: { axis: "x" | "y" | "z"; point: Point | null; lines: Polyline[] }[];
   near: Polyline[]; far: Polyline[];
   objects: DrawnObject[];
-  /** The view from outside that was asked for, and the scene's camera in it. */
+  /** The second camera of a view from outside. Absent if no such view was requested. */
   view?: View;
   camera?: {
     lines: Record<CameraLine, Polyline[]>;
@@ -83,14 +83,16 @@ export interface Glass {
   mean: number[];
   color: string;
   bound: number;
+  method: string;
   counts: number[];
   errors: { method: string; typical: number[]; own: number[] }[];
 }
 
 /** A lesson: its name, its Markdown, and the text of its scene. */
 export interface LessonText { name: string; text: string; start: string }
-/** Whether a scene solves a lesson, with the conditions of each block `check`. `found` is the value
- * in the scene; `start` that in the lesson's own scene, if the condition compares with it. */
+/** Result of judging a lesson: whether the scene solves it, and each condition of each block
+ * `check`. `found` is the value in the scene. `start` is the value in the lesson's own scene; null
+ * unless the condition compares the two. */
 export interface Judged {
   holds: boolean;
   checks: { condition: string; words: string; found: string; start: string | null;
@@ -114,7 +116,8 @@ export interface HostedFile {
  * began; null if there was no file. `time` is when the draft was made, in seconds since 1970. */
 export interface Draft { id: string; name: string; text: string; base: string | null; time: number }
 
-/** Whether the file was saved. If not, `text` is the file's current content. */
+/** Whether the file was saved. If not, `text` is the file's current content, or null if the file
+ * was removed. */
 export type Saved = { ok: true } | { ok: false; text: string | null };
 
 /** Error with which the server answers a request. */

@@ -13,11 +13,8 @@ import type { Added, DrawnObject, Handle, Point, SceneObject } from "./protocol"
 import { say } from "./status";
 import { setText } from "./visible";
 
-/** Minimum distance between two handles, in screen pixels. It is the width of the area in which a
- * handle can be pressed, which is larger for fingers than for a mouse. */
-const APART = matchMedia("(pointer: coarse)").matches ? 45 : 25;
-
-/** Offsets, in screen pixels, tried in turn to keep a handle from overlapping another one. */
+/** Offsets from a handle's point, in screen pixels, the nearest first. A handle that would overlap
+ * another one is moved by the first of them that avoids this. */
 const ASIDE: Point[] = [];
 for (let x = -60; x <= 60; x += 6) for (let y = -60; y <= 60; y += 6) ASIDE.push([x, y]);
 ASIDE.sort((a, b) => Math.hypot(...a) - Math.hypot(...b));
@@ -134,7 +131,8 @@ class Selection {
     tools.offer(this.index !== null, hasFloor);
   }
 
-  /** Outline and handles of the selected object, if they are known for the current text. */
+  /** Outline and handles of the selected object; undefined if they are not known for the current
+   * text. */
   get drawn(): DrawnObject | undefined {
     const { data, isTrue } = overlays;
     const { line } = editor.position(this.selected?.from ?? 0);
@@ -184,9 +182,12 @@ export function placeHandles(parent: HTMLElement, where: Picture,
     return button;
   }));
   parent.dataset["names"] = names;
+  // The areas in which handles can be pressed do not overlap. They are larger for fingers, and on
+  // the large page.
+  const least = 1 + ((parent.firstElementChild as HTMLElement | null)?.offsetWidth ?? 0);
   const taken: Point[] = [];
   shown.forEach(({ at, label, owner }, i) => {
-    const [x, y] = apart(where.toScreen(at as Point), taken);
+    const [x, y] = apart(where.toScreen(at as Point), taken, least, where.stage);
     taken.push([x, y]);
     const button = parent.children[i] as HTMLElement;
     button.setAttribute("aria-label", `${owner}: ${label}`);
@@ -195,11 +196,16 @@ export function placeHandles(parent: HTMLElement, where: Picture,
   });
 }
 
-/** Returns a position near a handle's point that is far enough from the positions in `taken`. */
-function apart([x, y]: Point, taken: readonly Point[]): Point {
+/** Returns a position near a handle's point that is at least `least` screen pixels away from the
+ * positions in `taken`. If the point is inside of the `stage`, the position is, too, if
+ * possible. */
+function apart([x, y]: Point, taken: readonly Point[], least: number, stage: HTMLElement): Point {
   const isFree = ([x, y]: Point) =>
-    taken.every(it => Math.max(Math.abs(x - it[0]), Math.abs(y - it[1])) >= APART);
-  return ASIDE.map(([dx, dy]): Point => [x + dx, y + dy]).find(isFree) ?? [x, y];
+    taken.every(it => Math.max(Math.abs(x - it[0]), Math.abs(y - it[1])) >= least);
+  const [width, height] = [stage.clientWidth, stage.clientHeight];
+  const isInside = ([x, y]: Point) => x >= 0 && y >= 0 && x <= width && y <= height;
+  const free = ASIDE.map(([dx, dy]): Point => [x + dx, y + dy]).filter(isFree);
+  return (isInside([x, y]) ? free.find(isInside) : undefined) ?? free[0] ?? [x, y];
 }
 
 export const selection = new Selection();

@@ -37,7 +37,7 @@ async function unpacked(text: string): Promise<string> {
   }
 }
 
-/** Compressed scene that was last read from the page's address. */
+/** Compressed scene that was last read from the page's address; null if there was none. */
 let known: string | null = null;
 
 /** Returns the scene in the page's address. Returns null if there is none or it was read before. */
@@ -61,29 +61,33 @@ export function showProgress(share: number): void {
 
 const stem = () => files.at.name.replace(/\.scn$/, "");
 const rendering = byId("rendering");
-const render = async (kind: "png" | "exr", type: string) => {
+/** Downloads a file that the server makes of the scene, or of what `params` has instead. `part` is
+ * a part of the file's name. */
+export async function render(kind: "png" | "exr", type: string, part = "",
+  params: object = { text: editor.text }): Promise<void> {
   if (!rendering.hidden) return say("Another picture is being made.", "warning");
-  const name = `${stem()}.${kind}`;
+  const name = `${stem()}${part}.${kind}`;
   say(`Rendering ${name}…`);
   const wanted = new AbortController();
   byId("cancel").onclick = () => wanted.abort(new Error(`${name} was cancelled.`));
   showProgress(0);
   rendering.hidden = false;
   try {
-    const answer = await connection.request<Partial<Record<string, string>> | null>(
-      `studio/${kind}`, { text: editor.text }, wanted.signal);
-    const bytes = answer?.[kind];
-    if (bytes === undefined) return say("The text has errors: it has no picture.", "warning");
-    download(name, fromBase64(bytes), type);
+    const answer = await connection.request<Record<typeof kind, string>>(
+      `studio/${kind}`, params, wanted.signal);
+    download(name, fromBase64(answer[kind]), type);
     say(`${name} is downloaded.`);
   } catch (error) {
     say((error as Error).message, "warning");
   } finally { rendering.hidden = true; }
-};
+}
 byId("download-png").addEventListener("click", () => void render("png", "image/png"));
 byId("download-exr").addEventListener("click", () => void render("exr", "image/x-exr"));
 for (const id of ["download-scene", "connection-download"]) byId(id).addEventListener("click", () =>
   download(`${stem()}.scn`, files.textToSave, "text/plain"));
+byId("download-outside").addEventListener("click", () => void outside.asSvg().then(
+  svg => download(`${stem()}-outside.svg`, svg, "image/svg+xml"),
+  error => say((error as Error).message, "warning")));
 
 const dialog = byId<HTMLDialogElement>("share-dialog");
 const field = byId<HTMLInputElement>("share-link");

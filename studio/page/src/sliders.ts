@@ -5,13 +5,17 @@ import type { ChangeDesc } from "@codemirror/state";
 import { byId, create, createButton } from "./dom";
 import { editor } from "./editor";
 import { frames } from "./frames";
-import { Dial, literalAt } from "./numbers";
+import { Dial, literalAt, written } from "./numbers";
 import type { Slider } from "./protocol";
+import { render } from "./share";
 import { setText } from "./visible";
 
 /** Time in which a playing slider moves from one end to the other, in ms. Chosen by eye: with a
  * shorter time, a change would be hard to follow. */
 const PLAY = 4000;
+/** Maximum number of pictures in a recording, which lasts `PLAY`. Each has all of its samples.
+ * With more, the recording would be smoother, but take longer to make. */
+const PICTURES = 60;
 
 type Row = ReturnType<typeof createRow>;
 let rows: Row[] = [];
@@ -59,7 +63,9 @@ function createRow(name: string) {
   dial.range.addEventListener("input", () => { if (playing === row) stop(); });
   const [element, value, note] = [create("div", "slider-row"), create("output"), create("p")];
   const button: HTMLElement = createButton("", "play", () => play(row), `Play ${name}`);
-  element.append(create("span", "", name), dial.range, value, button, note);
+  const recorder: HTMLElement = createButton("", "record", () => void record(name, dial, recorder),
+    `Record ${name}`);
+  element.append(create("span", "", name), dial.range, value, button, recorder, note);
   const row = { name, at: 0, dial, element, value, button, note };
   return row;
 }
@@ -73,9 +79,28 @@ export function stop(): void {
   row.dial.end();
 }
 
+/** Downloads an animation of the scene with the numbers from one end of a slider to the other. The
+ * text stays as it is. If `button` is pressed already, cancels that. */
+async function record(name: string, { limits, literal }: Dial, button: Element): Promise<void> {
+  const found = literal();
+  if (button.ariaPressed === "true") return byId("cancel").click();
+  if (found === null || limits === null) return;
+  button.ariaPressed = "true";
+  const { ends: [least, most], step } = limits;
+  const last = Math.max(1, Math.min(PICTURES - 1, Math.round((most - least) / step)));
+  const values = Array.from({ length: last + 1 }, (_, i) =>
+    written(limits, least + Math.round((most - least) * i / last / step) * step));
+  const { text } = editor;
+  await render("png", "image/png", `-${name}`, { values, time: PLAY,
+    before: text.slice(0, found.from), after: text.slice(found.to) });
+  button.ariaPressed = null;
+}
+
 document.addEventListener("keydown", event => {
-  if (event.key !== "Escape" || playing === null) return;
+  const isRecorded = document.querySelector(".record[aria-pressed=true]") !== null;
+  if (event.key !== "Escape" || (playing === null && !isRecorded)) return;
   event.stopPropagation();
+  if (isRecorded) byId("cancel").click();
   stop();
 }, true);
 

@@ -48,8 +48,8 @@ class Tools {
    * there is none, the floor if the scene has a checkerboard. `""` means no restriction. */
   private get kept(): Along | "" { return this.chosen ?? (this.hasFloor ? "floor" : ""); }
 
-  /** Axis or plane along which a drag moves an object, or a handle of the camera. The floor is a
-   * default for objects only. */
+  /** Axis or plane along which a drag moves an object, or a handle of the camera; undefined if the
+   * movement is not restricted. Without a choice by the user, the floor restricts only objects. */
   along(isObject: boolean): Along | undefined {
     const along = isObject ? this.kept : this.chosen;
     return this.held.shiftKey ? undefined : along || undefined;

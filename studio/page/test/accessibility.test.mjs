@@ -38,6 +38,11 @@ for (const colorScheme of ["dark", "light"]) {
       await page.click("summary:text('Show')");
       await audit(page, "with handles and a menu");
       await page.keyboard.press("Escape");
+      await page.focus("#stage");
+      await page.keyboard.press("b");
+      await page.waitForSelector("#undo", { state: "hidden" });
+      await audit(page, "with the large page");
+      await page.keyboard.press("b");
       await page.click("#share");
       await audit(page, "with the share dialog");
       await page.click("#share-dialog >> text=Close");

@@ -1,7 +1,9 @@
-// Measures, in the page, how long pictures of figure 9.9 take at 1280 × 720: from a key and from a
-// step of a drag to the coarse and to the finished picture, as medians of 100; the coarse pictures
-// per second of a drag; and whether memory grows. `node test/bench.mjs [drags of 100 steps]`; with
-// SITE, for the static page in that folder; with OUTSIDE=hidden, without the view from outside.
+// Measures how fast the page shows pictures of figure 9.9 at 1280 × 720 pixels. For a key, and for
+// a step of a drag, prints the time to the coarse picture and to the finished one, as medians of
+// 100. Also prints the number of coarse pictures per second of a drag, and fails if memory grows.
+//
+// Call: `node test/bench.mjs [drags of 100 steps]`. With SITE, it measures the static page in that
+// folder; with OUTSIDE=hidden, the page without the view from outside.
 
 import { chromium } from "playwright-core";
 import { readFileSync } from "node:fs";
@@ -25,7 +27,7 @@ const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? 
 try {
   const page = await open(browser, host);
   if (process.env.OUTSIDE === "hidden") await page.click("#outside-hide");
-  // Times are from the browser's event to the picture on the canvas.
+  // A time begins at the browser's event, and ends when the picture is on the canvas.
   await page.evaluate(() => {
     window.begin = 0;
     window.frames = [];
@@ -100,12 +102,13 @@ try {
     }
   }
   await page.mouse.up();
-  // If 200 bytes of each of 10 000 pictures were kept, the limit would be exceeded.
+  // The limit is 2 MiB, i.e. about 200 bytes for each of 10 000 pictures.
   const after = await memory();
   for (const of of ["heap", "host"]) if (after[of] - before[of] > 2) throw new Error(`memory grows: ${JSON.stringify(before)} before, ${JSON.stringify(after)} after ${pictures} pictures`);
 
-  // A thousand spheres: the time from a drag to the coarse picture, and how many of the keys, one
-  // per 120 ms, have a picture before the next key.
+  // Measures a scene of a thousand spheres: the time from a movement or a key to the coarse
+  // picture. A key is pressed every 120 ms; also prints for how many keys the picture arrives in
+  // this time.
   if (process.env.SITE === undefined) {
     const spheres = Array.from({ length: 1000 }, (_, i) => `sphere { center (${(i % 40) - 20}, ${Math.floor(i / 40) - 12}, ${-(i % 7)})  radius 0.4 }\n`);
     writeFileSync(file, `image { width 1280  height 720 }\ncamera { eye (0, 2, 30)  lookat (0, 0, 0) }\nsphere Ball { center (0, 0, 3)  radius 2 }\n${spheres.join("")}`);

@@ -126,7 +126,7 @@ for (const way of ["a reload of its tab, and its address there", "its address in
       await offered(page);
       assert.match(await page.textContent("#connection"), /Studio was started anew/);
       assert.equal(await page.locator("#draft-choices li").count(), 1);
-      // The page continues at once.
+      // After the draft is restored, the page can be used at once, with the same file.
       await choose(page, "Restore");
       assert.equal(await text(page), typed);
       assert.ok(await page.isHidden("#draft-bar"));
@@ -292,6 +292,34 @@ test("saving a draft over a newer file asks first", async t => {
   await other.keyboard.press("Control+s");
   await other.waitForSelector("#conflict-dialog[open]");
   assert.equal(started.text(), NEARER);
+});
+
+test("Restore in a lesson restores the user's own scene, and leaving the page in a lesson asks about it", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  const lesson = () => andFinished(page, async () => {
+    await page.click("#lessons");
+    await page.click("#lesson-body li:nth-child(1) button");
+  });
+  await andFinished(page, () => type(page, LARGER));
+  await lesson();
+  await kept(page);
+  // The lesson's scene is unchanged, but the user's own text is unsaved.
+  const [asked] = await Promise.all([page.waitForEvent("dialog", { timeout: 5000 }), page.reload({ timeout: 5000 }).catch(() => {})]);
+  assert.equal(asked.type(), "beforeunload");
+  await asked.accept();
+  await page.goto(new URL(page.url()).origin);
+  await finished(page);
+  await offered(page);
+  assert.equal(await text(page), FIGURE);
+  await lesson();
+  await andFinished(page, () => choose(page, "Restore"));
+  assert.ok(await page.isHidden("#lesson"));
+  assert.equal(await text(page), LARGER);
+  assert.equal(await page.textContent("#file-name"), "scene.scn");
+  await page.keyboard.press("Control+s");
+  await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
+  assert.equal(started.text(), LARGER);
 });
 
 test("drafts are readable only by their user", async t => {

@@ -1,4 +1,4 @@
-// Drags by a real pointer, which is pressed, moved twelve times at the pace of a hand, and
+// Tests of drags by a real pointer. It is pressed, moved twelve times at the pace of a hand, and
 // released.
 
 import assert from "node:assert/strict";
@@ -35,7 +35,7 @@ test("consecutive drags of handles and the camera each change their own values",
     await rested(page);
     assert.notEqual(await text(page), before, `the drag by ${tool} does nothing`);
   }
-  // Each drag was one undo step.
+  // Undo reverts one whole drag at a time.
   for (let i = 0; i < drags.length + 5; i++) await page.keyboard.press("Control+z");
   assert.equal(await text(page), FIGURE);
 });
@@ -127,7 +127,8 @@ test("Escape reverts a pointer's change of a slider, a number or the divider", a
   for (const [name, given] of Object.entries(ways)) {
     const { before, from, after } = { ...around, ...given };
     await before();
-    // A slider has its final ends only after the server has tried them.
+    // The server tests which values at the ends of a slider are valid, so the ends may still
+    // change.
     await rested(page);
     await hand(page, await from(), [40, 0], { hold: true });
     await rested(page);
@@ -165,7 +166,7 @@ test("a drag's note stands at the pointer while it lasts, and the footer shows n
   assert.equal(await page.textContent("#pointed"), "");
   await page.mouse.up();
   await page.waitForSelector("#drag-note", { state: "hidden" });
-  // The pointer has not moved since, but the footer names the object that is now under it.
+  // The pointer has not moved after the drag. Even so, the footer names the object under it.
   await page.waitForFunction(() => /^Ball at /.test(document.querySelector("#pointed").textContent));
   await page.keyboard.press("Control+z");
   await page.waitForFunction(() => !/^Ball at /.test(document.querySelector("#pointed").textContent));
@@ -238,14 +239,14 @@ test("a drag faster than the server's answers still arrives", async t => {
   await rested(page);
   assert.notEqual(await text(page), FIGURE);
   await finished(page);
-  // Text typed during a drag is never lost.
+  // A text that is typed after the drag is not changed by late answers.
   await type(page, WATCHED);
   await rested(page);
   assert.equal(await text(page), WATCHED);
 });
 
 test("at every window size selecting moves nothing, and objects follow the pointer", async t => {
-  // The objects' lines are far below the first ones, so selecting them scrolls.
+  // The objects' blocks are far below the first lines, so selecting an object scrolls the text.
   const started = await host(t, `${"// a line\n".repeat(60)}${FIGURE}`);
   const browser = await launch(t);
   const first = await open(browser, started, { viewport: { width: 1280, height: 720 } });

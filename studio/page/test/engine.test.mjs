@@ -25,7 +25,7 @@ before(async () => {
 
 let requests = 0;
 
-/** Returns the response to a request, after all slices of the work for it. */
+/** Sends a request, lets the engine do all the work for it, and returns the response. */
 function ask(engine, method, params) {
   const id = ++requests;
   const said = engine.handle(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
@@ -54,7 +54,8 @@ function rendered(text, ending = "png", ...args) {
   }
 }
 
-/** Returns a PNG from its pixel chunks on; the chunks before contain the scene's text. */
+/** Returns the part of a PNG with the pixels. The part before it contains the scene's text, which
+ * is not compared. */
 const pixels = png => png.subarray(png.indexOf("IDAT"));
 
 test("a frame has the pixels that the program renders", { skip }, () => {

@@ -225,7 +225,7 @@ test("Studio without a file and New start with the same valid text", async t => 
   await andFinished(page, () => menu(page, "File", "#new"));
   assert.equal(await text(page), first);
   assert.equal(await page.textContent("#said"), "");
-  // A new object stands on a board that is added later.
+  // A board that is added after the objects gets the height at which they stand on it.
   for (const kind of ["sphere", "box", "checkerboard"]) {
     await andFinished(page, () => menu(page, "+ Add", `[data-kind=${kind}]`));
     await rested(page);

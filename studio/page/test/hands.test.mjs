@@ -375,3 +375,40 @@ test("the selection stays when another program inserts text before it", async t 
     assert.notEqual(now[line - 1], lines[at]);
   }
 });
+
+test("two fingers shift the picture as far as they move, shrink it at most to its whole, and select nothing", async t => {
+  const page = await open(await launch(t), await host(t), { viewport: { width: 1280, height: 720 }, hasTouch: true });
+  const session = await page.context().newCDPSession(page);
+  const touch = (type, ...points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+  const place = () => page.evaluate(() => document.querySelector("canvas").getBoundingClientRect().toJSON());
+  const line = () => page.textContent(".cm-activeLine");
+  /** Moves two fingers, of which the first is pressed a moment before the second. */
+  const fingers = async (from, to) => {
+    const at = part => from.map((it, i) => it.map((_, axis) => it[axis] + (to[i][axis] - it[axis]) * part));
+    await touch("touchStart", from[0]);
+    await page.waitForTimeout(200);
+    await touch("touchStart", ...from);
+    for (let i = 1; i <= 10; i++) await touch("touchMove", ...at(i / 10));
+    await touch("touchEnd");
+    await page.waitForTimeout(200);
+  };
+  const before = await line();
+  const whole = (await place()).width;
+  const [x, y] = await onPage(page, BALL);
+  await fingers([[x, y], [x + 60, y]], [[x - 30, y], [x + 110, y]]);
+  const near = await place();
+  assert.ok(near.width > 1.8 * whole, `${near.width}`);
+  // The middle of the fingers moves by 60 and 50, and their distance stays.
+  await fingers([[860, 170], [960, 170]], [[920, 220], [1020, 220]]);
+  const shifted = await place();
+  assert.ok(Math.abs(shifted.left - near.left - 60) < 6 && Math.abs(shifted.top - near.top - 50) < 6, JSON.stringify([near, shifted]));
+  assert.ok(Math.abs(shifted.width - near.width) < 6);
+  for (let i = 0; i < 4; i++) await fingers([[760, 200], [1060, 200]], [[900, 200], [920, 200]]);
+  assert.ok(Math.abs((await place()).width - whole) < 2, `${(await place()).width} of ${whole}`);
+  // At this limit, too, fingers shift without a zoom.
+  await fingers([[860, 170], [960, 170]], [[920, 170], [1020, 170]]);
+  assert.ok(Math.abs((await place()).width - whole) < 2, `${(await place()).width} of ${whole}`);
+  assert.equal(await page.locator("#handles .handle").count(), 0);
+  assert.equal(await line(), before);
+  assert.equal(await text(page), FIGURE);
+});

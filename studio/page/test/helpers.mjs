@@ -57,7 +57,7 @@ export async function host(context, text = FIGURE, name = "scene.scn") {
 export async function serve(file, { port, folder, browser, lesson } = {}) {
   const scene = file === null ? [] : [file];
   const options = [...(browser === undefined ? ["--no-open"] : []), ...(port === undefined ? [] : ["--port", port]), ...(lesson === undefined ? [] : ["--lesson", lesson])];
-  // The program that opens a browser is found on the path.
+  // The host finds the program that opens a browser on the path, where a test may put its own.
   const env = { ...process.env, XDG_STATE_HOME: STATE, PATH: browser === undefined ? process.env.PATH : `${browser}:${process.env.PATH}` };
   const child = spawn(PINHOLE, ["studio", ...scene, ...options], { cwd: folder, env, stdio: ["ignore", "ignore", "pipe"] });
   let said = "";
@@ -105,7 +105,7 @@ export async function open(browser, { address }, { late, ...options } = {}) {
   return page;
 }
 
-/** Delays each answer by as many milliseconds as `late` has for its method. */
+/** Delays the host's answers. `late` gives the delay for each method, in milliseconds. */
 async function delayed(page, late) {
   await page.routeWebSocket("**/socket", socket => {
     const server = socket.connectToServer();
@@ -193,7 +193,7 @@ export async function onPage(page, [x, y]) {
   );
 }
 
-/** Chooses a tool. Those of the camera are in a menu. */
+/** Chooses a tool by a click of a script, since the camera's tools are in a closed menu. */
 export async function choose(page, tool) {
   await page.evaluate(tool => document.querySelector(`input[name=tool][value=${tool}]`).click(), tool);
 }

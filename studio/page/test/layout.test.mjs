@@ -220,7 +220,7 @@ test("the first problem is shown with its fix above the sliders, and the list ho
   await type(page, `let r = 1\n${FIGURE.replace("radius 1", "radios r")}`);
   await page.waitForSelector("#problem-list .fix");
   assert.ok(await page.isVisible("#sliders"));
-  assert.ok((await page.locator("#problem-list").boundingBox()).height < 60);
+  assert.ok((await page.locator("#problem-list").boundingBox()).height < 120);
   await page.click("#problem-list .fix");
   await page.waitForSelector("#problem-list", { state: "hidden" });
   assert.match(await text(page), /radius r/);

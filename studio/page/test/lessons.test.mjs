@@ -2,38 +2,12 @@
 // links, and a lesson of a teacher.
 
 import assert from "node:assert/strict";
-import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { test } from "node:test";
-import { andFinished, drag, FIGURE, finished, host, launch, link, menu, open, serve, site, text, type } from "./helpers.mjs";
-
-const folder = new URL("../../../examples/lessons/", import.meta.url);
-const names = readdirSync(folder).filter(file => /^\d.*\.md$/.test(file)).sort().map(file => file.replace(".md", ""));
-const read = (name, ending) => readFileSync(new URL(`${name}.${ending}`, folder), "utf8");
-
-const state = page => page.textContent("#lesson-state");
-
-async function until(page, words) {
-  await page.waitForFunction(words => document.querySelector("#lesson-state").textContent.includes(words), words, { timeout: 15_000 });
-}
-
-/** Opens a lesson by the list, with the mouse. */
-async function choose(page, number) {
-  if (await page.isHidden("#lesson")) await page.click("#lessons");
-  else await page.click("#lesson-list");
-  await andFinished(page, () => page.click(`#lesson-body li:nth-child(${number}) button`));
-}
-
-/** Returns the conditions of the step: whether each holds, and its words. */
-async function conditions(page) {
-  return page.locator(".conditions li").evaluateAll(all => all.map(it => [it.classList.contains("holds"), it.children[1].textContent]));
-}
-
-/** Goes on to the last step. */
-async function last(page) {
-  while ((await page.textContent("#lesson-next")) === "Next ▸") await page.click("#lesson-next");
-}
+import { andFinished, drag, FIGURE, finished, hand, handle, host, launch, link, menu, open, serve, site, text, type } from "./helpers.mjs";
+import { choose, conditions, last, names, read, state, until } from "./lessons.mjs";
 
 test("a lesson is opened, done with the mouse, and left, and no text is lost", async t => {
   const page = await open(await launch(t), await host(t));
@@ -43,14 +17,14 @@ test("a lesson is opened, done with the mouse, and left, and no text is lost", a
   assert.equal(await text(page), read(names[0], "scn"));
   assert.equal(await page.textContent("#file-name"), `${names[0]}.scn`);
   assert.match(await page.textContent("#lesson-title"), /^1\. The view plane$/);
-  // The text that was not saved is offered.
+  // The unsaved text that the lesson's scene has replaced is offered as a draft.
   await page.waitForSelector("#draft-bar:not([hidden])");
   await page.click("#draft-later");
   assert.equal(await state(page), "");
   await last(page);
   await until(page, "0 of 3 hold");
   assert.equal(await page.locator(".condition-mark[aria-label='does not hold:']").count(), 3);
-  // From the front to the back, as a student would do it.
+  // The three objects are dragged to the middle of the picture, the front one first.
   for (const [from, held] of [[[265, 292], "1 of 3"], [[513, 253], "2 of 3"], [[316, 155], "Solved."]]) {
     await andFinished(page, () => drag(page, from, [400, 225]));
     await until(page, held);
@@ -58,20 +32,86 @@ test("a lesson is opened, done with the mouse, and left, and no text is lost", a
   assert.ok((await conditions(page)).every(([holds]) => holds));
   await page.click("#lesson-list");
   assert.match(await page.textContent("#lesson-body li:first-child"), /✓/);
-  // Coming back changes nothing, and Start again restores the start.
+  // Returning to the lesson does not change the text. `Start again` restores the lesson's own
+  // scene.
   const solved = await text(page);
   await page.click("#lesson-body li:first-child button");
   assert.equal(await text(page), solved);
   await andFinished(page, () => page.click("#lesson-again"));
   assert.equal(await text(page), read(names[0], "scn"));
   await until(page, "0 of 3 hold");
-  await page.click("#lesson-close");
+  await andFinished(page, () => page.click("#lesson-close"));
   assert.ok(await page.isHidden("#lesson"));
   assert.equal(new URL(page.url()).hash, "");
-  await page.click(".cm-content");
-  for (let i = 0; i < 9 && (await text(page)) !== mine; i++) await page.keyboard.press("Control+z");
   assert.equal(await text(page), mine);
   assert.deepEqual(page.complaints, []);
+});
+
+test("Undo stays in a lesson, and each lesson keeps its text until the page is reloaded", async t => {
+  const page = await open(await launch(t), await host(t));
+  const mine = FIGURE.replace("radius 1", "radius 1.5");
+  await andFinished(page, () => type(page, mine));
+  const scenes = [0, 1].map(i => read(names[i], "scn"));
+  const changed = scenes.map(scene => `${scene}// changed\n`);
+  for (const i of [0, 1]) {
+    await choose(page, i + 1);
+    await andFinished(page, () => type(page, changed[i]));
+    for (let undone = 0; undone < 4; undone++) {
+      await page.click(".cm-content");
+      await page.keyboard.press("Control+z");
+    }
+    assert.equal(await text(page), scenes[i]);
+    assert.equal(await page.textContent("#file-name"), `${names[i]}.scn`);
+    await andFinished(page, () => type(page, changed[i]));
+  }
+  // Layers of one lesson are not shown in the next.
+  await menu(page, "Show", "#layers >> text=Horizon");
+  await page.waitForSelector("#lines .horizon", { state: "attached" });
+  await choose(page, 3);
+  assert.equal(await page.locator("#lines .horizon").count(), 0);
+  await andFinished(page, () => page.goBack());
+  // Only the user's own text is offered as a draft, not those of lessons.
+  assert.equal(await page.locator("#draft-choices li").count(), 1);
+  // Back leads to the first lesson as it was left, and from there to the user's own text.
+  await andFinished(page, () => page.goBack());
+  assert.equal(await text(page), changed[0]);
+  await andFinished(page, () => page.goBack());
+  assert.ok(await page.isHidden("#lesson"));
+  assert.equal(await text(page), mine);
+  assert.ok(await page.isHidden("#draft-bar"));
+  assert.deepEqual(page.complaints, []);
+});
+
+test("conditions are judged after a drag and not during it, one request at a time", async t => {
+  const page = await open(await launch(t), await host(t), { late: { "pinhole/lesson": 1500 } });
+  await choose(page, 1);
+  await last(page);
+  await until(page, "0 of 3 hold");
+  const asked = [];
+  const session = await page.context().newCDPSession(page);
+  await session.send("Network.enable");
+  session.on("Network.webSocketFrameSent", ({ response }) => response.payloadData.includes('"pinhole/lesson"') && asked.push(Date.now()));
+  await page.selectOption("#objects", { index: 1 });
+  const object = await page.locator("#handles .handle").first().getAttribute("aria-label");
+  const [x, y] = await handle(page, object);
+  const before = await text(page);
+  await hand(page, [x, y], [30, 0], { hold: true });
+  await page.waitForTimeout(1000);
+  assert.notEqual(await text(page), before);
+  assert.equal(asked.length, 0);
+  await page.mouse.up();
+  while (asked.length === 0) await page.waitForTimeout(20);
+  // Pauses in typing are longer than the delay before a request, and shorter than the answer's.
+  await page.focus(".cm-content");
+  await page.keyboard.press("Control+End");
+  for (const letter of "// ab") {
+    await page.keyboard.type(letter);
+    await page.waitForTimeout(250);
+  }
+  await page.waitForTimeout(3500);
+  assert.ok(asked.length >= 2 && asked.length <= 3, `${asked.length}`);
+  asked.slice(1).forEach((at, i) => assert.ok(at - asked[i] >= 1400, `${at - asked[i]} ms after`));
+  assert.equal(await state(page), "0 of 3 hold");
 });
 
 test("every lesson is solved by its solution, and by nothing less", async t => {
@@ -83,7 +123,9 @@ test("every lesson is solved by its solution, and by nothing less", async t => {
     await page.waitForFunction(() => / of \d hold/.test(document.querySelector("#lesson-state").textContent));
     const before = await conditions(page);
     assert.ok(before.length > 0 && before.some(([holds]) => !holds), name);
-    // In every condition, words say what it asks for.
+    // The conditions of this step are counted, not those of other steps.
+    assert.match(await state(page), new RegExp(`^${before.filter(([holds]) => holds).length} of ${before.length} hold$`));
+    // Each condition is described in words, not by a path such as `inspect/camera`.
     for (const [, words] of before) assert.ok(!/[a-z]\/[a-z]/.test(words), words);
     await andFinished(page, () => type(page, read(name, "solution.scn")));
     await until(page, "Solved.");
@@ -205,7 +247,7 @@ test("a teacher's lesson runs, with its own scene or a student's, and shows no f
   assert.deepEqual(await page.locator(".conditions li").evaluateAll(all => all.map(it => it.textContent)), ["○Ball is largernow 1, at the start 1", '○inspect/objects/Ball/color = "#ffff00"now #808000']);
   await andFinished(page, () => type(page, FIGURE.replace("radius 1", "radius 2")));
   await until(page, "1 of 2 hold");
-  // While the text has errors, the marks stay.
+  // While the text has errors, the marks of the conditions stay as they are.
   await type(page, "camera {}");
   await page.waitForTimeout(500);
   assert.equal(await state(page), "1 of 2 hold");
@@ -232,6 +274,102 @@ test("a teacher's lesson runs, with its own scene or a student's, and shows no f
   assert.deepEqual([page.complaints, other.complaints], [[], []]);
 });
 
+/** Starts a host of a teacher's lesson, for a student's file or a new scene. */
+async function teacher(t, lesson, student = null) {
+  const folder = mkdtempSync(path.join(tmpdir(), "pinhole-lesson-"));
+  const [md, file] = [path.join(folder, "mine.md"), path.join(folder, "student.scn")];
+  writeFileSync(md, lesson);
+  writeFileSync(path.join(folder, "mine.scn"), FIGURE);
+  if (student !== null) writeFileSync(file, student);
+  const started = await serve(student === null ? null : file, { folder, lesson: md });
+  t.after(() => {
+    started.stop();
+    rmSync(folder, { recursive: true, force: true });
+  });
+  return started;
+}
+
+test("a teacher's lesson about a student's file shows that file again after another lesson", async t => {
+  const student = FIGURE.replace("radius 1", "radius 1.5");
+  const started = await teacher(t, LESSON, student);
+  const page = await open(await launch(t), started);
+  const isBack = async () => {
+    assert.equal(await text(page), student);
+    assert.equal(await page.textContent("#file-name"), "student.scn");
+    if ((await page.textContent("#lesson-next")) === "Next ▸") await page.click("#lesson-next");
+    await until(page, "1 of 2 hold");
+  };
+  await isBack();
+  const another = async () => {
+    if (await page.isHidden("#lesson-body li button")) await page.click("#lesson-list");
+    await andFinished(page, () => page.click("#lesson-body li:nth-child(2) button"));
+    assert.equal(await text(page), read(names[0], "scn"));
+  };
+  await another();
+  await page.click("#lesson-list");
+  await andFinished(page, () => page.click("#lesson-body li:nth-child(1) button"));
+  await isBack();
+  await another();
+  await andFinished(page, () => page.goBack());
+  await isBack();
+  await another();
+  await andFinished(page, () => page.goto(`${new URL(started.address).origin}/#lesson=0`));
+  await isBack();
+});
+
+const RICH = `# The **bold** \`title\`
+
+> A quotation of ~~struck~~ text
+
+#### A small heading
+
+| a | b |
+| --- | --- |
+| 1 | **2** |
+
+![An olive ball](ball.png) and ![](empty.png)
+
+- [x] done
+
+\`\`\`check-list
+inspect/camera/d > 100
+\`\`\`
+
+  \`\`\`check
+  inspect/camera/d > 101
+  \`\`\`
+
+<!--
+\`\`\`check
+inspect/camera/d > 0
+\`\`\`
+-->
+
+## Task
+
+~~~check
+inspect/camera/d > 2  // d is large
+inspect/camera/d > 3
+~~~
+`;
+
+test("a lesson's Markdown is shown as such, and its checks are those of the engine", async t => {
+  const page = await open(await launch(t), await teacher(t, RICH));
+  assert.equal(await page.textContent("#lesson-title"), "The bold title");
+  const body = page.locator("#lesson-body");
+  for (const [selector, words] of [["blockquote", "A quotation of struck text"], ["del", "struck"], ["h4", "A small heading"], ["table th:nth-child(2)", "b"], ["table td strong", "2"]])
+    assert.equal((await body.locator(selector).textContent()).trim(), words);
+  const shown = await body.textContent();
+  assert.match(shown, /An olive ball and/);
+  assert.match(shown, /☑ done/);
+  assert.doesNotMatch(shown, /<\w|> 0/);
+  assert.equal(await body.locator("img, input, .conditions").count(), 0);
+  assert.deepEqual((await body.locator("pre").allTextContents()).map(it => it.trim()), ["inspect/camera/d > 100", "inspect/camera/d > 101"]);
+  await page.click("#lesson-next");
+  await until(page, "1 of 2 hold");
+  assert.deepEqual(await conditions(page), [[true, "d is large"], [false, "inspect/camera/d > 3"]]);
+});
+
 for (const [width, height] of [[400, 800], [400, 640], [1280, 720]]) {
   test(`a lesson is legible at ${width} × ${height}`, async t => {
     const page = await open(await launch(t), await host(t), { viewport: { width, height } });
@@ -254,13 +392,13 @@ for (const [width, height] of [[400, 800], [400, 640], [1280, 720]]) {
           };
         });
         assert.deepEqual([found.wide, found.inside, found.across], [0, true, 0], JSON.stringify(found));
-        // At least three lines are seen without scrolling, and the others by scrolling.
+        // At least three lines of the lesson are visible without scrolling.
         assert.ok(found.lines >= 3 && found.size >= 14, JSON.stringify(found));
         if ((await page.textContent("#lesson-next")) !== "Next ▸") break;
         await page.click("#lesson-next");
       }
     }
-    // The text is still there.
+    // The editor is still visible beside the lesson.
     assert.ok((await page.locator(".cm-editor").boundingBox()).height > 20);
   });
 }
@@ -275,7 +413,7 @@ test("the static page has the lessons, and its engine judges them", { skip }, as
   assert.equal(await text(page), read(names[1], "scn"));
   await andFinished(page, () => type(page, read(names[1], "solution.scn")));
   await until(page, "Solved.");
-  // The error needs an exact picture.
+  // A condition of this lesson is about the error, for which the engine computes an exact picture.
   await choose(page, 7);
   await last(page);
   await until(page, "3 of 5 hold");

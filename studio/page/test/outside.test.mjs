@@ -2,10 +2,12 @@
 // it is shown.
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { andFinished, FIGURE, hand, host, launch, link, menu, onPage, open, rested, text, type } from "./helpers.mjs";
 
-/** Waits until the view from outside has its handles, its picture, and rests. */
+/** Waits until the view from outside shows its handles and its final picture, and nothing
+ * changes. */
 async function outside(page) {
   await page.waitForFunction(() => document.querySelector("#outside-canvas").dataset.fineness === "final" && document.querySelector("#outside-handles .handle") !== null);
   await rested(page);
@@ -24,7 +26,7 @@ const vector = (text, field) => new RegExp(`\\b${field}\\s+\\(([^)]*)\\)`).exec(
 /** Returns the labels that are drawn beside handles. */
 const labels = page => page.locator("#outside-lines text").allTextContents();
 
-/** Chooses Start, Top, Side or Front. */
+/** Chooses a view by the name of its button: Start, Top, Side or Front. */
 async function look(page, name) {
   const before = await page.evaluate(() => document.querySelector("#outside-handles").innerHTML);
   await page.click(`#dock button:text("${name}")`);
@@ -55,7 +57,7 @@ test("each handle of the camera changes its own field", async t => {
   await outside(page);
   for (const [name, by] of [["eye", [20, -30]], ["lookat", [-30, 10]], ["d", [40, 4]], ["view_height", [4, 20]], ["up", [14, 4]], ["near", [20, 10]], ["far", [-30, -20]]]) {
     if (name === "far") {
-      // The far plane is beyond the view that was chosen for the rest.
+      // The far plane lies outside of the view at first, so the view is zoomed out.
       await page.focus("#outside");
       for (let i = 0; i < 5; i++) await page.keyboard.press("-");
       await outside(page);
@@ -94,7 +96,7 @@ test("an object is dragged along the floor, and what is dragged in the picture i
   await page.selectOption("#objects", { label: "Crate (box)" });
   const own = page.locator('#outside-handles .handle[aria-label="Outside, Crate: center"]');
   const [x, y] = await center(own);
-  // Beside the handle, the crate itself is pressed.
+  // The press is beside the handle, on the crate itself.
   await hand(page, [x + 17, y + 17], [-25, 14]);
   await rested(page);
   const [a, b, c] = vector(/box.*/.exec(await text(page))[0], "center");
@@ -121,7 +123,6 @@ test("a drag beside objects turns the view, and keys and the wheel move it, with
     assert.ok(Math.hypot(a - start[0], b - start[1]) > least, `${what}: ${[a, b]} is ${start}`);
   };
   const same = async what => {
-    await page.waitForFunction(() => true);
     await outside(page);
     const [a, b] = await center(named(page, "eye"));
     assert.ok(Math.hypot(a - start[0], b - start[1]) < 2, `${what}: ${[a, b]} is not ${start}`);
@@ -232,7 +233,7 @@ test("a link holds the view that was chosen, and another scene gets a view of it
   await outside(other);
   assert.equal(await places(other), expected);
   await other.click('summary:text("File")');
-  await andFinished(other, () => other.click('#examples button:text("camera inside the box")').catch(() => other.locator("#examples button").nth(4).click()));
+  await andFinished(other, () => other.click('#examples button:text-is("straight down")'));
   await outside(other);
   assert.notEqual(await places(other), expected);
 });
@@ -252,7 +253,7 @@ for (const [width, height, isShown] of [[1280, 720, true], [1920, 1080, true], [
     assert.ok(found.wide <= width, `${found.wide}`);
     if (!isShown) return;
     assert.ok(found.high >= 180 && found.stage >= 250 && found.tall <= height, JSON.stringify(found));
-    // Nothing of the handles lies outside of the dock when the view is chosen.
+    // In the view that the server has chosen, these handles lie within the dock.
     const dock = await page.locator("#outside").boundingBox();
     for (const name of ["eye", "lookat", "d", "view_height"]) {
       const [x, y] = await center(named(page, name));
@@ -277,4 +278,308 @@ test("the printed page has the view from outside", async t => {
   await rested(page);
   assert.ok(await page.isVisible("#outside-canvas"));
   for (const hidden of [".dock-tools", "#outside-handles"]) assert.ok(await page.isHidden(hidden), hidden);
+});
+
+test("a camera that a change of the text moves out of the view is shown again", async t => {
+  const page = await open(await launch(t), await host(t));
+  await outside(page);
+  const isInside = async name => {
+    if (await named(page, name).count() === 0) return false;
+    const [x, y] = await center(named(page, name));
+    const box = await page.locator("#outside").boundingBox();
+    return x >= box.x && x <= box.x + box.width && y >= box.y && y <= box.y + box.height;
+  };
+  await type(page, FIGURE.replace(/eye .*/, "eye    (0, 12, 40)"));
+  await outside(page);
+  for (const name of ["eye", "d", "up"]) assert.ok(await isInside(name), name);
+  // If the user has moved the camera out of the view by turning or zooming it, it stays so.
+  await page.focus("#outside");
+  for (let i = 0; i < 12; i++) await page.keyboard.press("=");
+  await outside(page);
+  assert.ok(!(await isInside("eye")));
+});
+
+test("the main picture is finished while the server chooses another view", async t => {
+  const page = await open(await launch(t), await host(t));
+  await outside(page);
+  const sent = [];
+  const session = await page.context().newCDPSession(page);
+  await session.send("Network.enable");
+  session.on("Network.webSocketFrameSent", ({ response }) => sent.push(response.payloadData));
+  await page.locator(".cm-line").getByText("2.75", { exact: true }).click();
+  await page.keyboard.press("End");
+  for (const [i, name] of ["Top", "Side", "Front", "Start", "Top", "Side"].entries()) {
+    await andFinished(page, async () => {
+      await page.keyboard.press(i % 2 === 0 ? "Backspace" : "5");
+      await page.waitForTimeout(40 * i);
+      await page.evaluate(name => [...document.querySelectorAll("#dock button")].find(it => it.textContent === name).click(), name);
+    });
+  }
+  // A frame without a view would take the place of the main picture's.
+  assert.ok(sent.length > 20);
+  assert.deepEqual(sent.filter(it => it.includes("pinhole/frame") && it.includes('"view":null')), []);
+});
+
+test("two fingers zoom and shift the view, one turns it, and the text stays", async t => {
+  const page = await open(await launch(t), await host(t), { viewport: { width: 820, height: 1180 }, hasTouch: true });
+  await outside(page);
+  const session = await page.context().newCDPSession(page);
+  const touch = (type, ...points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+  const { x, y, height } = await page.locator("#outside").boundingBox();
+  // In the lower corner, no object is below the fingers.
+  const [left, low] = [x + 60, y + height - 20];
+  const places = async () => {
+    await outside(page);
+    return Promise.all(["eye", "lookat"].map(name => center(named(page, name))));
+  };
+  const apart = ([a, b]) => Math.hypot(a[0] - b[0], a[1] - b[1]);
+  const before = await places();
+  await touch("touchStart", [left, low]);
+  await touch("touchStart", [left, low], [left + 60, low]);
+  for (let i = 1; i <= 6; i++) await touch("touchMove", [left, low], [left + 60 + 5 * i, low]);
+  await touch("touchEnd");
+  const nearer = await places();
+  // The distance of the fingers has grown by a half, and the view has followed their middle.
+  assert.ok(apart(nearer) > 1.3 * apart(before), `${apart(before)} ${apart(nearer)}`);
+  await page.click('#dock button:text("Start")');
+  assert.ok(apart([(await places())[0], before[0]]) < 2);
+  await touch("touchStart", [left, low]);
+  await touch("touchStart", [left, low], [left + 60, low]);
+  for (let i = 1; i <= 6; i++) {
+    await touch("touchMove", [left + 6 * i, low - 3 * i], [left + 60 + 6 * (i - 1), low - 3 * (i - 1)]);
+    await touch("touchMove", [left + 6 * i, low - 3 * i], [left + 60 + 6 * i, low - 3 * i]);
+  }
+  await touch("touchEnd");
+  const shifted = await places();
+  // What is nearer than the middle of the view moves farther, in the same direction.
+  for (const i of [0, 1]) {
+    const [right, down] = [0, 1].map(axis => shifted[i][axis] - before[i][axis]);
+    assert.ok(right > 20 && right < 80 && Math.abs(right + 2 * down) < 6, `${right} ${down}`);
+  }
+  await page.click('#dock button:text("Start")');
+  await places();
+  await touch("touchStart", [left, low]);
+  await page.waitForTimeout(300);
+  for (let i = 1; i <= 6; i++) await touch("touchMove", [left + 8 * i, low]);
+  await touch("touchEnd");
+  const turned = await places();
+  assert.ok(apart([turned[0], before[0]]) > 6, "one finger turns");
+  assert.equal(await text(page), FIGURE);
+});
+
+test("on a page that is higher than wide, the divider follows the pointer, and the view has what is left", async t => {
+  const browser = await launch(t);
+  const started = await host(t);
+  const page = await open(browser, started, { viewport: { width: 820, height: 1180 } });
+  await outside(page);
+  const box = async id => page.locator(id).boundingBox();
+  const before = await box("#outside");
+  const { x, width, height } = await box("#divider");
+  for (const by of [90, -60]) {
+    const from = (await box("#divider")).y;
+    await hand(page, [x + width / 2, from + height / 2], [0, by]);
+    await outside(page);
+    // The share of the text is a whole number of percents.
+    assert.ok(Math.abs((await box("#divider")).y - from - by) <= 8, `${by}`);
+  }
+  const after = await box("#outside");
+  assert.ok(after.height > before.height + 15, `${before.height} ${after.height}`);
+  const share = await page.getAttribute("#divider", "aria-valuenow");
+  const shares = expected => page.waitForFunction(expected => document.querySelector("#divider").getAttribute("aria-valuenow") === expected, expected, { timeout: 5000 });
+  await page.setViewportSize({ width: 1280, height: 720 });
+  // Side by side, the share is another one.
+  await shares("42");
+  await page.setViewportSize({ width: 820, height: 1180 });
+  await shares(share);
+});
+
+test("the view is downloaded as an SVG, with its picture, the camera, and the outlines of all objects", async t => {
+  const page = await open(await launch(t), await host(t, FIGURE.replace("d      2.75", "d      2.75\n  near   2\n  far    14")), { colorScheme: "dark" });
+  await outside(page);
+  const [download] = await Promise.all([page.waitForEvent("download"), menu(page, "Download", "#download-outside")]);
+  assert.equal(download.suggestedFilename(), "scene-outside.svg");
+  const svg = readFileSync(await download.path(), "utf8");
+  // It is drawn by itself, without the page and its style.
+  const alone = await page.context().browser().newPage();
+  await alone.setContent(svg);
+  const found = await alone.evaluate(async () => {
+    const image = document.querySelector("image");
+    const picture = new Image();
+    picture.src = image.href.baseVal;
+    await picture.decode();
+    const shown = [...document.querySelectorAll("svg > *")].filter(it => getComputedStyle(it).display !== "none");
+    const lines = shown.filter(it => it.tagName === "path" && !it.classList.contains("under"));
+    return {
+      picture: [picture.naturalWidth, picture.naturalHeight],
+      size: ["width", "height"].map(it => Number(image.getAttribute(it))),
+      labels: shown.filter(it => it.tagName === "text").map(it => it.textContent),
+      outlines: lines.filter(it => it.classList.contains("outline")).length,
+      camera: lines.flatMap(it => ["frustum", "rays", "window", "near", "far"].filter(name => it.classList.contains("camera") && it.classList.contains(name))),
+      inks: lines.map(it => getComputedStyle(it).stroke),
+      wide: document.documentElement.scrollWidth,
+    };
+  });
+  assert.deepEqual(found.picture, found.size.map(it => 2 * it));
+  for (const label of ["eye", "lookat", "near 2", "far 14"]) assert.ok(found.labels.includes(label), `${label} of ${found.labels}`);
+  assert.equal(found.outlines, 3);
+  assert.deepEqual(found.camera.sort(), ["far", "frustum", "near", "rays", "window"]);
+  // All lines are dark, for printers without colours.
+  for (const ink of found.inks) assert.ok(ink.match(/\d+/g).map(Number).reduce((sum, it) => sum + it) < 3 * 100, ink);
+  // The page shows its lines as before, and while the view is hidden there is nothing to download.
+  await outside(page);
+  assert.equal(await page.locator("#outside-lines .outline").count(), 0);
+  await page.click("#outside-hide");
+  assert.ok(await page.isHidden("#download-outside"));
+});
+
+test("a sheet of paper has picture, view and text on one page, whatever the window's size and colours", async t => {
+  const browser = await launch(t);
+  const started = await host(t);
+  for (const [width, height, colorScheme] of [[1280, 720, "light"], [1920, 1080, "dark"], [820, 1180, "light"], [400, 800, "light"]]) {
+    const page = await open(browser, started, { viewport: { width, height }, colorScheme });
+    if (width > 760) await outside(page);
+    const placed = () => page.evaluate(() => ["#canvas", "#outside-canvas", "#outside-lines text"].map(it => JSON.stringify(document.querySelector(it)?.getBoundingClientRect())));
+    const before = await placed();
+    const pdf = await page.pdf({ preferCSSPageSize: true });
+    assert.equal((pdf.toString("latin1").match(/\/Type\s*\/Page\b/g) ?? []).length, 1, `${width}`);
+    // Afterwards, the page is as it was.
+    await rested(page);
+    if (width > 760) await outside(page);
+    await page.waitForTimeout(300);
+    assert.equal(await page.locator("body.paper").count(), 0);
+    assert.deepEqual(await placed(), before, `${width}`);
+    await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+    await page.emulateMedia({ media: "print" });
+    const found = await page.evaluate(() => Object.fromEntries(["#stage", "#canvas", "#outside", "#outside-canvas", "#print-text"].map(it => [it, document.querySelector(it).getBoundingClientRect().toJSON()])));
+    for (const [place, picture] of width > 760 ? [["#stage", "#canvas"], ["#outside", "#outside-canvas"]] : [["#stage", "#canvas"]]) {
+      const [outer, inner] = [found[place], found[picture]];
+      assert.ok(Math.abs(outer.width - 180 / 25.4 * 96) < 1, `${place} at ${width}: ${outer.width}`);
+      assert.ok(inner.left >= outer.left - 1 && inner.right <= outer.right + 1 && inner.width > 0.4 * outer.width, `${picture} at ${width}: ${JSON.stringify(inner)}`);
+    }
+    if (width < 760) assert.equal(found["#outside"].height, 0);
+    assert.ok(found["#print-text"].top > found["#canvas"].bottom);
+    await page.context().close();
+  }
+});
+
+test("handles that are moved aside stay in the view, and the far plane is in it", async t => {
+  // Fingers need larger handles, so more of them are moved aside.
+  const page = await open(await launch(t), await host(t, FIGURE.replace("d      2.75", "d      2.75\n  far    14")), { viewport: { width: 1280, height: 720 }, hasTouch: true });
+  await outside(page);
+  const box = await page.locator("#outside").boundingBox();
+  for (const view of ["Top", "Side", "Front", "Start"]) {
+    await look(page, view);
+    const handles = page.locator("#outside-handles .handle");
+    for (let i = 0; i < await handles.count(); i++) {
+      const [x, y] = await center(handles.nth(i));
+      assert.ok(x >= box.x && x <= box.x + box.width && y >= box.y && y <= box.y + box.height, `${view}: ${await handles.nth(i).getAttribute("aria-label")} at ${x}, ${y}`);
+    }
+  }
+});
+
+test("the left button turns the view with new pictures, however long one takes", async t => {
+  const page = await open(await launch(t), await host(t), { late: { "pinhole/frame": 60 } });
+  await outside(page);
+  const { x, y, height } = await page.locator("#outside").boundingBox();
+  await page.evaluate(() => {
+    window.pictures = 0;
+    document.querySelector("#outside-canvas").addEventListener("pinhole-frame", () => window.pictures++);
+  });
+  await hand(page, [x + 60, y + height - 15], [80, 20], { steps: 80, hold: true });
+  const seen = await page.evaluate(() => window.pictures);
+  await page.mouse.up();
+  assert.ok(seen >= 3, `${seen}`);
+});
+
+test("Control with + - 0 is left to the browser, and Escape takes back that the view was chosen", async t => {
+  const page = await open(await launch(t), await host(t));
+  await outside(page);
+  await page.evaluate(() => {
+    window.taken = [];
+    addEventListener("keydown", event => event.ctrlKey && event.key !== "Control" && window.taken.push(event.defaultPrevented));
+  });
+  const before = await center(named(page, "eye"));
+  await page.focus("#outside");
+  for (const key of ["-", "=", "0"]) await page.keyboard.press(`Control+${key}`);
+  await outside(page);
+  assert.deepEqual(await page.evaluate(() => window.taken), [false, false, false]);
+  const { x, y, height } = await page.locator("#outside").boundingBox();
+  await hand(page, [x + 60, y + height - 15], [40, 12], { hold: true });
+  await page.waitForTimeout(300);
+  await page.keyboard.press("Escape");
+  await page.mouse.up();
+  await outside(page);
+  assert.deepEqual(await center(named(page, "eye")), before);
+  assert.doesNotMatch(await link(page), /view=/);
+});
+
+test("an SVG has the same size beside the glass and from another window, and none is made of an error", async t => {
+  const browser = await launch(t);
+  const started = await host(t);
+  const widths = [];
+  for (const width of [1280, 1600]) {
+    const page = await open(browser, started, { viewport: { width, height: 800 } });
+    await outside(page);
+    if (width === 1600) await page.focus("#stage");
+    if (width === 1600) await page.keyboard.press("g");
+    await outside(page);
+    const [download] = await Promise.all([page.waitForEvent("download"), menu(page, "Download", "#download-outside")]);
+    const svg = readFileSync(await download.path(), "utf8");
+    widths.push(/<svg[^>]* width="(\d+)"/.exec(svg)[1]);
+    // Other programs honour the opacity of a shape, but not of a picture.
+    assert.doesNotMatch(/<image[^>]*>/.exec(svg)[0], /opacity/);
+    assert.match(svg, /<image[^>]*\/><rect[^>]* fill-opacity="0\.4/);
+    if (width === 1280) continue;
+    await type(page, FIGURE.replace("camera  {", "camra {"));
+    await page.waitForFunction(() => document.querySelector("#outside-note").textContent !== "");
+    await menu(page, "Download", "#download-outside");
+    await page.waitForFunction(() => /no view from outside/.test(document.querySelector("#said").textContent));
+    assert.equal(await page.locator("#outside.ink").count(), 0);
+  }
+  assert.equal(widths[0], widths[1]);
+});
+
+test("beside the glass, the printed view and its lines have one frame, on one page, and labels do not overlap", async t => {
+  const page = await open(await launch(t), await host(t), { viewport: { width: 1280, height: 720 } });
+  await outside(page);
+  await page.mouse.click(...(await onPage(page, [620, 330])));
+  await page.keyboard.press("g");
+  await page.waitForSelector("#glass-points circle");
+  await outside(page);
+  const pdf = await page.pdf({ preferCSSPageSize: true });
+  assert.equal((pdf.toString("latin1").match(/\/Type\s*\/Page\b/g) ?? []).length, 1);
+  await outside(page);
+  await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+  await page.emulateMedia({ media: "print" });
+  const { boxes, names } = await page.evaluate(() => ({
+    boxes: ["#outside", "#outside-canvas", "#outside-lines"].map(it => document.querySelector(it).getBoundingClientRect()).map(({ left, top, right, bottom }) => [left, top, right, bottom]),
+    names: [...document.querySelectorAll("#outside-lines text")].map(it => ({ label: it.textContent, box: it.getBoundingClientRect().toJSON() })),
+  }));
+  for (const box of boxes) box.forEach((side, i) => assert.ok(Math.abs(side - boxes[0][i]) < 2, JSON.stringify(boxes)));
+  assert.ok(names.length >= 4, JSON.stringify(names));
+  for (const [i, { label, box: a }] of names.entries()) for (const { label: other, box: b } of names.slice(0, i))
+    assert.ok(a.right <= b.left + 1 || b.right <= a.left + 1 || a.bottom <= b.top + 1 || b.bottom <= a.top + 1, `${label} and ${other}`);
+});
+
+test("a text with an error is printed with its first error and line", async t => {
+  const page = await open(await launch(t), await host(t));
+  await type(page, FIGURE.replace("camera  {", "camra {"));
+  await page.waitForSelector("#problem-list li");
+  await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+  await page.emulateMedia({ media: "print" });
+  assert.match(await page.innerText("#print-text"), /^scene\.scn, .*\nLine 6: there is no kind of block `camra`/);
+});
+
+test("a hint of the text before a drag is hidden until the drag has ended", async t => {
+  const page = await open(await launch(t), await host(t));
+  await outside(page);
+  const hint = page.locator(".hint", { hasText: "fov" });
+  await hint.waitFor();
+  const before = await hint.textContent();
+  await hand(page, await center(named(page, "d")), [60, 5], { hold: true });
+  await page.waitForFunction(() => !document.querySelector(".cm-content").textContent.includes("2.75"));
+  assert.ok(await hint.isHidden());
+  await page.mouse.up();
+  await hint.waitFor();
+  assert.notEqual(await hint.textContent(), before);
 });

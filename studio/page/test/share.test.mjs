@@ -26,6 +26,12 @@ test("a link contains the scene and causes no other request", async t => {
   await other.click(".cm-content");
   await other.keyboard.press("Control+z");
   assert.equal(await text(other), FIGURE);
+  // Save asks for a name instead of writing to the host's file.
+  await other.keyboard.press("Control+y");
+  await other.click("#save");
+  await other.waitForSelector("#name-dialog[open]");
+  await other.keyboard.press("Escape");
+  assert.equal(started.text(), FIGURE);
   // The link stays in the address, and reloading opens it again.
   assert.equal(other.url(), address);
   await other.reload();

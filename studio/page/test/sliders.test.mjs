@@ -1,8 +1,9 @@
 // Tests of sliders for definitions and numbers: their limits, playing them, and errors in the text.
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { FIGURE, finished, hand, handle, host, launch, open, rested, tab, text, type } from "./helpers.mjs";
+import { FIGURE, finished, hand, handle, host, launch, open, rendered, rested, tab, text, type } from "./helpers.mjs";
 
 const number = (text, pattern) => Number(new RegExp(`${pattern}\\s*(-?[\\d.e-]+)`).exec(text)[1]);
 
@@ -189,8 +190,8 @@ test("a slider's value has few digits and never covers its button", async t => {
     await tab(page, "text");
     await until(page, "max", "57.2");
     const rows = await page.locator(".slider-row").evaluateAll(all => all.map(row => [...row.querySelectorAll("span, input, output, button")].map(it => it.getBoundingClientRect()).concat(row.getBoundingClientRect()).map(({ left, right }) => [left, right])));
-    for (const [name, input, output, button, row] of rows) {
-      assert.ok(name[1] <= input[0] && input[1] <= output[0] && output[1] <= button[0] && button[1] <= row[1], `${width}: ${[name, input, output, button, row].join(" ")}`);
+    for (const [name, input, output, button, recorder, row] of rows) {
+      assert.ok(name[1] <= input[0] && input[1] <= output[0] && output[1] <= button[0] && button[1] <= recorder[0] && recorder[1] <= row[1], `${width}: ${[name, input, output, button, recorder, row].join(" ")}`);
       assert.ok(input[1] - input[0] > 60, `${width}: ${input.join()}`);
     }
     assert.equal(await page.locator(".slider-row input").nth(2).getAttribute("max"), "1000000");
@@ -207,4 +208,110 @@ test("a range behind a value that is not a number is reported", async t => {
   const rows = await page.locator(".slider-row").evaluateAll(all => all.map(row => [row.innerText, row.querySelector("input").checkVisibility()]));
   assert.equal(rows.length, 2);
   for (const [said, has] of rows) assert.ok(!has && /^[rv]\s+a range is for a number/.test(said), said);
+});
+
+/** Reads an animation in the browser: its size, and of each picture its duration and its bytes'
+ * digest. */
+async function animation(page, bytes) {
+  return page.evaluate(async base64 => {
+    const data = Uint8Array.from(atob(base64), letter => letter.charCodeAt(0));
+    const decoder = new ImageDecoder({ data, type: "image/png", colorSpaceConversion: "none" });
+    await decoder.tracks.ready;
+    const { frameCount, animated, repetitionCount } = decoder.tracks.selectedTrack;
+    const frames = [];
+    for (let frameIndex = 0; frameIndex < frameCount; frameIndex++) {
+      const { image } = await decoder.decode({ frameIndex });
+      const canvas = new OffscreenCanvas(image.displayWidth, image.displayHeight);
+      const context = canvas.getContext("2d");
+      context.drawImage(image, 0, 0);
+      const { data: pixels } = context.getImageData(0, 0, canvas.width, canvas.height);
+      const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", pixels));
+      frames.push({ time: image.duration / 1000, size: [canvas.width, canvas.height], digest: digest.join() });
+      image.close();
+    }
+    return { animated, repetitionCount, frames };
+  }, bytes.toString("base64"));
+}
+
+test("a recorded number is an animation of its whole range, of full pictures, and the text stays", async t => {
+  const small = scene("let r = 1 // [0.5:0.25:2]", "radius 1", "radius r").replace("width 1280  height 720", "width 320  height 180");
+  const started = await host(t, small);
+  const page = await open(await launch(t), started);
+  await page.waitForSelector(".slider-row");
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click('[aria-label="Record r"]')]);
+  assert.equal(download.suggestedFilename(), "scene-r.png");
+  await page.waitForFunction(() => /scene-r\.png is downloaded/.test(document.querySelector("#said").textContent));
+  assert.ok(await page.isHidden("#rendering"));
+  assert.equal(await page.locator(".record[aria-pressed]").count(), 0);
+  const { animated, repetitionCount, frames } = await animation(page, readFileSync(await download.path()));
+  assert.ok(animated && repetitionCount === Infinity, `${repetitionCount}`);
+  assert.equal(frames.length, 7);
+  const time = frames.reduce((sum, it) => sum + it.time, 0);
+  assert.ok(Math.abs(time - 4000) < 10, `${time}`);
+  // Each picture is that of the program, at the scene's own size and samples.
+  for (const [i, frame] of frames.entries()) {
+    const alone = await animation(page, rendered(started.folder, small.replace("let r = 1", `let r = ${0.5 + 0.25 * i}`)));
+    assert.deepEqual([frame.size, frame.digest], [[320, 180], alone.frames[0].digest], `${i}`);
+  }
+  assert.equal(new Set(frames.map(it => it.digest)).size, 7);
+  assert.equal(await text(page), small);
+  assert.ok(await page.isDisabled("#undo"));
+});
+
+test("a recording has at most 60 pictures, tells its progress, and ends by Escape or its button", async t => {
+  const page = await open(await launch(t), await host(t, scene("let r = 1 // [0.5:0.001:2]", "radius 1", "radius r")));
+  await page.waitForSelector(".slider-row");
+  const downloads = [];
+  page.on("download", it => downloads.push(it));
+  for (const end of [() => page.keyboard.press("Escape"), () => page.click('[aria-label="Record r"]'), () => page.click("#cancel")]) {
+    await page.click('[aria-label="Record r"]');
+    await page.waitForSelector('[aria-label="Record r"][aria-pressed=true]');
+    await page.waitForFunction(() => document.querySelector("#progress").value > 0.001, null, { timeout: 60_000 });
+    assert.ok(await page.isVisible("#rendering"));
+    await end();
+    await page.waitForFunction(() => /scene-r\.png was cancelled/.test(document.querySelector("#said").textContent));
+    assert.ok(await page.isHidden("#rendering"));
+    assert.equal(await page.locator(".record[aria-pressed]").count(), 0);
+  }
+  assert.deepEqual(downloads, []);
+  // Nothing is left running at the host: another file is made at once.
+  await type(page, scene("let r = 1 // [0.5:0.001:2]", "radius 1", "radius r").replace("width 1280  height 720", "width 64  height 36"));
+  await rested(page);
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click('[aria-label="Record r"]')]);
+  assert.equal((await animation(page, readFileSync(await download.path()))).frames.length, 60);
+});
+
+test("a recording stops at a value that is an error, and says at which", async t => {
+  const page = await open(await launch(t), await host(t, scene("let r = 1 // [0:0.5:4]", "radius 1", "radius 2 - r").replace("width 1280  height 720", "width 64  height 36")));
+  await page.waitForSelector(".slider-row");
+  await page.click('[aria-label="Record r"]');
+  await page.waitForSelector("#said[data-tone=warning]");
+  assert.equal(await page.textContent("#said"), "with 2 the scene has errors");
+  assert.ok(await page.isHidden("#rendering"));
+  assert.equal(await page.locator(".record[aria-pressed]").count(), 0);
+});
+
+test("a number has a slider with a grip that says what it does, and a named number can also be played and recorded", async t => {
+  const page = await open(await launch(t), await host(t, scene("let r = 1", "radius 1", "radius r")));
+  await page.waitForSelector(".slider-row");
+  for (const name of ["Play r", "Record r"]) assert.ok(await page.isVisible(`[aria-label="${name}"]`));
+  await page.locator(".cm-line").getByText("2.75").click();
+  await page.waitForSelector(".slider .grip");
+  assert.equal(await page.innerText(".slider .grip"), "↔ drag");
+  await page.keyboard.press("Escape");
+  await page.focus("#stage");
+  await page.keyboard.press("?");
+  assert.match(await page.innerText("#keys-dialog"), /▶ plays it, ● records it/);
+});
+
+test("a problem is shown as a whole, or scrolls", async t => {
+  const page = await open(await launch(t), await host(t));
+  await type(page, FIGURE.replace("  d ", "  dd "));
+  await page.waitForSelector("#problem-list li");
+  const { cut, list, high } = await page.evaluate(() => {
+    const list = document.querySelector("#problem-list");
+    const place = list.querySelector(".place");
+    return { cut: place.scrollHeight - place.clientHeight, list: list.scrollHeight, high: list.clientHeight };
+  });
+  assert.ok(cut <= 1 && high > 60, `${cut} ${list} ${high}`);
 });

@@ -7,8 +7,8 @@ import { comparing, decoded, FIGURE, hand, handle, host, launch, onPage, open, p
 
 const LATE = 1500;
 /**
- * Maximum time until the text has followed the pointer, in milliseconds: an answer to the edit that
- * is under way, an answer to the last one, and some time for the page.
+ * Maximum time until the text has followed the pointer, in milliseconds. It allows for the answers
+ * to two edits, the one that is under way and the last one, and for the page's own work.
  */
 const BEHIND = 2 * LATE + 1200;
 const BALL = [455, 320];
@@ -42,7 +42,7 @@ test("a handle arrives where it was released, however late the host answers", as
     await rested(page);
   }
   for (const [name, drag] of Object.entries(DRAGS)) for (const slow of ["pinhole/drag", "pinhole/frame", "pinhole/pick"]) {
-    // An object that is dragged without a handle must not be selected before the drag.
+    // If an object is dragged without a handle, another object is selected before the drag.
     await page.selectOption("#objects", { label: name === "object" ? "Crate (box)" : "Ball (sphere)" });
     await rested(page);
     // Only the edits must be in time, so a picture may take much longer.

@@ -93,7 +93,7 @@ test("completion, hints, swatches and format come from the server", async t => {
   await page.waitForTimeout(200);
   await page.keyboard.press("Enter");
   assert.match(await text(page), /center \(0, 0, 0\) radius 1$/);
-  // The placeholder is selected, to type over.
+  // The placeholder is selected, so that typing replaces it.
   await andFinished(page, () => page.keyboard.insertText("2 }"));
   await page.keyboard.press("Shift+Alt+f");
   await page.waitForFunction(() => /sphere \{ center \(0, 0, 0\) {2}radius 2 \}/.test(document.querySelector(".cm-content").innerText));
@@ -187,7 +187,8 @@ test("texts and names of a scene are never interpreted as HTML", async t => {
     await page.waitForTimeout(500);
   }
   assert.equal(await page.evaluate(() => window.hit), undefined);
-  // The reference has figures of its own.
+  // Except for the figures in the language reference, the page must have no pictures, and its body
+  // no scripts.
   assert.equal(await page.locator("img:not(.cm-widgetBuffer, #language-dialog img), body script").count(), 0);
 });
 
@@ -199,11 +200,12 @@ test("a key press requests its picture first, also if it selects another object"
   await page.goto(started.address);
   await finished(page);
   await page.locator(".cm-line").filter({ hasText: /^sphere/ }).click();
-  // The line is wrapped: the first press goes to the end of the row, the second to that of the
-  // line.
+  // The line is wrapped into rows. The first press of End goes to the end of the row, the second to
+  // the end of the line.
   for (let i = 0; i < 2; i++) await page.keyboard.press("End");
   await rested(page);
-  // Behind a space after the block, the object is no longer selected. Without the space, it is.
+  // If the cursor is after a space behind the block, the object is not selected. When the space is
+  // deleted, it is selected again.
   for (const key of ["Space", "Backspace"]) {
     asked.length = 0;
     await andFinished(page, () => page.keyboard.press(key));

@@ -1,5 +1,5 @@
-// A random walk of actions: after any sequence, the picture is that of the text, and Undo restores
-// the first text. STEPS is the number of actions, SEED that of the walk.
+// A random walk of actions. After any sequence of actions, the picture shows the text, and Undo
+// restores the first text. STEPS is the number of actions; SEED selects the sequence.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
