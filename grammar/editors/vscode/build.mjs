@@ -1,6 +1,7 @@
 // Bundles into dist/:
 //
 // - the extension with its dependencies and their licences;
+// - the page of Pinhole Studio, for the panel with the picture;
 // - its page, with embedded pictures;
 // - Pinhole's own licences;
 // - the program that the environment variable BUNDLE names, if it is set.
@@ -29,6 +30,10 @@ const texts = [...folders].sort().map(folder => {
   return `${name} ${version}\n\n${readFileSync(path.join(folder, license), "utf8").trim()}\n`;
 });
 writeFileSync("dist/LICENSES.txt", `dist/extension.js contains the packages below, each under its licence.\n\n${texts.join("\n\n")}`);
+
+mkdirSync("dist/page", { recursive: true });
+for (const file of ["index.html", "studio.js", "studio.css", "LICENSES.txt"]) copyFileSync(`../../../studio/page/dist/${file}`, `dist/page/${file}`);
+copyFileSync("src/panel.css", "dist/page/panel.css");
 
 // The pictures are embedded in the page, since the editor loads no pictures from elsewhere.
 const page = readFileSync("README.md", "utf8");

@@ -5,9 +5,9 @@ const os = require("node:os");
 const path = require("node:path");
 
 /**
- * Returns the path of the program `pinhole`: the setting, if there is one, else the first on PATH,
- * where `cargo install` puts it, or the one that the extension was packaged with; undefined if
- * there is no such file.
+ * Returns the path of the program `pinhole`. If the setting is empty, searches the folders on PATH,
+ * the folder to which `cargo install` writes, and the extension's own folder, in this order.
+ * Returns undefined if there is no such file.
  *
  * @param {string} setting `pinhole.path`: `~/` is the home folder, and a relative path starts at
  *   `folder`.
@@ -29,7 +29,8 @@ function findBinary(setting, folder, extension, env = process.env) {
 }
 
 /**
- * Returns the file of this name, which may lack its ending on Windows; undefined if there is none.
+ * Returns the path of an executable file; undefined if there is none. On Windows, `.exe` is added
+ * if the name does not end in it.
  */
 function existing(file) {
   const names = process.platform === "win32" && !file.toLowerCase().endsWith(".exe") ? [`${file}.exe`] : [file];

@@ -1,10 +1,12 @@
-// The extension: finds the program, keeps its language server running, and renders pictures.
+// The extension: finds the program, keeps its language server running, and shows and renders
+// pictures.
 
 const { execFile } = require("node:child_process");
 const path = require("node:path");
 const vscode = require("vscode");
-const { LanguageClient } = require("vscode-languageclient/node");
+const { ErrorAction, LanguageClient } = require("vscode-languageclient/node");
 const { findBinary } = require("./binary");
+const { Pictures, isOfPage } = require("./panel");
 
 /** Folder of the extension; its subfolder `bin` may contain the program. */
 let home;
@@ -12,13 +14,18 @@ let home;
 /** The client of the server, while it runs. */
 let client;
 
+/** The panel with the picture beside the text. */
+let pictures;
+
 /**
- * Serialises starts and stops, so that two quick changes of a setting do not leave two servers.
+ * Promise that settles when all starts and stops so far have finished. They run one after another,
+ * so that two quick changes of a setting do not leave two servers.
  */
 let turn = Promise.resolve();
 
 function activate(context) {
   home = context.extensionPath;
+  pictures = new Pictures(context);
   context.subscriptions.push(
     vscode.commands.registerCommand("pinhole.render", render),
     vscode.commands.registerCommand("pinhole.watch", watch),
@@ -44,12 +51,26 @@ function next(step) {
 async function start() {
   const command = binary();
   if (command === undefined) return;
-  client = new LanguageClient(
+  const started = new LanguageClient(
     "pinhole",
     "Pinhole",
     { command, args: ["lsp"] },
-    { documentSelector: [{ language: "pinhole", scheme: "file" }, { language: "pinhole", scheme: "untitled" }] },
+    {
+      documentSelector: [{ language: "pinhole", scheme: "file" }, { language: "pinhole", scheme: "untitled" }],
+      // The panel's page has texts of its own at the server, which are not files of the editor.
+      middleware: { handleDiagnostics: (uri, diagnostics, next) => isOfPage(uri) || next(uri, diagnostics) },
+      errorHandler: {
+        // A message to a server that has just crashed fails. By default, the client then stops, so
+        // that it does not start the server again when the connection is closed a moment later.
+        error: () => ({ action: ErrorAction.Continue, handled: true }),
+        closed: () => restarts.closed(),
+      },
+    },
   );
+  // Starts a server again unless it crashed five times within three minutes.
+  const restarts = started.createDefaultErrorHandler();
+  client = started;
+  pictures.serve(client);
   // The client has shown errors already.
   await client.start().catch(() => {});
 }
@@ -65,7 +86,7 @@ async function restart() {
   await start();
 }
 
-/** Returns the program, or undefined after a message that says what to do. */
+/** Returns the path of the program; undefined if it is not found. The user is then told so. */
 function binary() {
   const setting = vscode.workspace.getConfiguration("pinhole").get("path", "");
   const found = findBinary(setting, vscode.workspace.workspaceFolders?.[0]?.uri.fsPath, home);
@@ -82,7 +103,8 @@ function binary() {
 }
 
 /**
- * Sets the program to a file that the user chooses; the change of the setting starts the server.
+ * Sets the path of the program to a file that the user chooses. The change of this setting restarts
+ * the server.
  */
 async function chooseBinary() {
   const [file] = (await vscode.window.showOpenDialog({ title: "The program pinhole", openLabel: "Use" })) ?? [];
@@ -95,8 +117,9 @@ async function chooseBinary() {
 }
 
 /**
- * Makes the open file a scene if another extension has claimed its ending, and offers this for
- * every such file. The server runs already: the command activates the extension.
+ * Treats the open file as a scene if another extension has claimed its ending, and offers to do so
+ * for every file with this ending. The server runs already, since the command activates the
+ * extension.
  */
 async function use() {
   const document = vscode.window.activeTextEditor?.document;
@@ -112,7 +135,7 @@ async function use() {
   await files.update("associations", associations, vscode.ConfigurationTarget.Global);
 }
 
-/** Saves the scene in the editor and returns its file, or undefined after a message. */
+/** Saves the scene in the editor and returns its path. If it has none, tells the user why. */
 async function savedScene() {
   const document = vscode.window.activeTextEditor?.document;
   if (document?.languageId !== "pinhole") {
@@ -168,7 +191,7 @@ function summary(said) {
 }
 
 /**
- * Renders the scene now and on every save, in a terminal, and shows the picture, which the editor
+ * Renders the scene now and after every save, in a terminal. Shows the picture, which the editor
  * reloads when it changes.
  */
 async function watch() {

@@ -3,6 +3,7 @@
 
 import { createRequire } from "node:module";
 import { fileURLToPath, pathToFileURL } from "node:url";
+import { Document, TextEditor } from "./documents.mjs";
 
 const disposable = () => ({ dispose() {} });
 
@@ -14,11 +15,21 @@ export class Uri {
   }
   static file(file) { return new Uri(pathToFileURL(file).href); }
   static parse(href) { return new Uri(href); }
+  static joinPath(uri, ...parts) { return new Uri(`${uri.href.replace(/\/$/, "")}/${parts.join("/")}`); }
   toString() { return this.href; }
 }
 
 class Position {
   constructor(line, character) { Object.assign(this, { line, character }); }
+}
+
+class Selection {
+  constructor(anchor, active) { Object.assign(this, { anchor, active, start: anchor, end: active }); }
+}
+
+class WorkspaceEdit {
+  edits = [];
+  set(uri, edits) { this.edits.push({ uri, edits }); }
 }
 
 class Range {
@@ -53,21 +64,72 @@ class TabInputText {
 /** An enumeration or class that only has to exist. */
 const anything = () => new Proxy(class {}, { get: (target, name) => (typeof name === "symbol" || name in target ? target[name] : 0) });
 
+/** Where a page finds the files that it may load. */
+export const RESOURCES = "https://resources.test";
+
 /**
- * Makes an editor with these documents. `setting` is the value of `pinhole.path`; `answers` are the
- * user's choices in messages, and `file` the choice in a dialog.
+ * A panel for a page. The page's side is `page`: what it is told, `say` for its messages, and
+ * `load`, which is called when the page is replaced.
+ */
+class WebviewPanel {
+  page = { told: [], html: [], hear: message => this.page.told.push(message), say: message => this.receive(message), load() {} };
+  isOpen = true;
+  revealed = 0;
+
+  constructor(kind, title, where) {
+    const { page } = this;
+    Object.assign(this, { kind, title, where });
+    const panel = this;
+    this.webview = {
+      cspSource: RESOURCES,
+      options: {},
+      get html() { return page.html.at(-1); },
+      set html(text) {
+        page.html.push(text);
+        page.load();
+      },
+      asWebviewUri: uri => ({ toString: () => `${RESOURCES}${uri.path}` }),
+      onDidReceiveMessage(receive) { panel.receive = receive; return disposable(); },
+      async postMessage(message) {
+        if (!panel.isOpen) throw new Error("Webview is disposed");
+        page.hear(message);
+      },
+    };
+  }
+  reveal() { this.revealed++; }
+  onDidDispose(ended) { this.ended = ended; return disposable(); }
+  dispose() { this.isOpen = false; this.ended?.(); }
+}
+
+/**
+ * Makes an editor with these documents, of which the first is shown. `setting` is the value of
+ * `pinhole.path`; `answers` are the user's choices in messages, and `file` the choice in a dialog.
  */
 export function editor({ documents = [], setting = "", answers = [], file } = {}) {
-  const seen = { messages: [], executed: [], terminals: [], updates: [], languages: [], providers: {}, diagnostics: new Map(), commands: new Map() };
+  const listeners = {};
+  const event = name => (listener, self) => {
+    const all = listeners[name] ??= new Set();
+    const bound = listener.bind(self);
+    all.add(bound);
+    return { dispose: () => all.delete(bound) };
+  };
+  // VS Code only logs what a listener's promise is rejected with.
+  const fire = (name, value) => listeners[name]?.forEach(listener => Promise.resolve(listener(value)).catch(() => {}));
+  const seen = { panels: [], serializers: {}, fire, messages: [], executed: [], terminals: [], updates: [], languages: [], providers: {}, diagnostics: new Map(), commands: new Map() };
+  const whole = documents.filter(it => it instanceof Document);
+  for (const it of whole) it.tell = change => fire("change", change);
+  const shown = whole.slice(0, 1).map(it => new TextEditor(it, 1));
   const show = kind => async (message, ...choices) => {
     seen.messages.push({ kind, message, choices });
     return choices.find(choice => answers.includes(choice));
   };
   const members = {
-    Uri, Position, Range, Diagnostic, TabInputText, CodeActionKind,
+    Uri, Position, Range, Selection, WorkspaceEdit, Diagnostic, TabInputText, CodeActionKind,
     version: "1.91.0",
     env: { appName: "test", language: "en", machineId: "test" },
-    ViewColumn: { Beside: -2 },
+    ViewColumn: { Beside: -2, One: 1 },
+    TextEdit: { replace: (range, newText) => ({ range, newText }) },
+    TextEditorRevealType: { InCenterIfOutsideViewport: 2 },
     ConfigurationTarget: { Global: 1 },
     ProgressLocation: { Notification: 15, Window: 10 },
     Disposable: class { constructor(end) { this.dispose = end; } static from() { return disposable(); } },
@@ -80,13 +142,31 @@ export function editor({ documents = [], setting = "", answers = [], file } = {}
     CancellationTokenSource: class { token = { isCancellationRequested: false, onCancellationRequested: disposable }; cancel() {} dispose() {} },
     CancellationError: Error,
     commands: partly({
-      registerCommand(name, run) { seen.commands.set(name, run); return disposable(); },
-      async executeCommand(...call) { seen.executed.push(call); },
+      registerCommand(name, run) { seen.commands.set(name, run); return { dispose: () => seen.commands.delete(name) }; },
+      async executeCommand(...call) {
+        seen.executed.push(call);
+        if (call[0] === "undo") vscode.window.activeTextEditor?.document.undo();
+      },
     }),
     window: partly({
-      activeTextEditor: documents[0] && { document: documents[0] },
+      activeTextEditor: shown[0] ?? (documents[0] && { document: documents[0] }),
       tabGroups: { all: [{ tabs: documents.map(({ uri }) => ({ input: new TabInputText(uri) })) }], onDidChangeTabs: disposable, onDidChangeTabGroups: disposable },
-      visibleTextEditors: [], visibleNotebookEditors: [], terminals: seen.terminals,
+      visibleTextEditors: shown, visibleNotebookEditors: [], terminals: seen.terminals,
+      onDidChangeActiveTextEditor: event("active"), onDidChangeTextEditorSelection: event("selection"),
+      async showTextDocument(document, { viewColumn, preserveFocus }) {
+        const { window } = vscode;
+        let shown = window.visibleTextEditors.find(it => it.document === document);
+        if (shown === undefined) {
+          shown = new TextEditor(document, viewColumn);
+          window.visibleTextEditors = [...window.visibleTextEditors.filter(it => it.viewColumn !== viewColumn), shown];
+        }
+        if (preserveFocus || window.activeTextEditor === shown) return shown;
+        window.activeTextEditor = shown;
+        fire("active", shown);
+        return shown;
+      },
+      createWebviewPanel(...how) { const panel = new WebviewPanel(...how); seen.panels.push(panel); return panel; },
+      registerWebviewPanelSerializer(kind, serializer) { seen.serializers[kind] = serializer; return disposable(); },
       showErrorMessage: show("error"), showInformationMessage: show("information"), showWarningMessage: show("warning"),
       showOpenDialog: async () => file && [Uri.file(file)],
       withProgress: (_, run) => run({ report() {} }, { isCancellationRequested: false, onCancellationRequested: disposable }),
@@ -94,7 +174,19 @@ export function editor({ documents = [], setting = "", answers = [], file } = {}
       createOutputChannel: () => partly({ onDidChangeLogLevel: disposable, logLevel: 0 }),
     }),
     workspace: partly({
-      textDocuments: documents, notebookDocuments: [], workspaceFolders: undefined,
+      textDocuments: documents, onDidChangeTextDocument: event("change"), onDidOpenTextDocument: event("open"),
+      async openTextDocument(uri) {
+        const found = documents.find(it => it.uri.toString() === uri.toString());
+        if (found === undefined) throw new Error(`${uri} cannot be opened`);
+        return found;
+      },
+      async applyEdit({ edits }) {
+        for (const { uri, edits: those } of edits) {
+          documents.find(it => it.uri.toString() === uri.toString()).apply(those.map(({ range, newText }) => ({ range, text: newText })));
+        }
+        return true;
+      },
+      notebookDocuments: [], workspaceFolders: undefined,
       getConfiguration: () => ({
         get: (name, preset) => (name === "path" ? setting : preset),
         inspect: name => (name === "associations" ? { globalValue: { "*.old": "text" } } : undefined),
@@ -129,4 +221,14 @@ export function load(vscode) {
   } finally {
     Module._load = whole;
   }
+}
+
+/** Waits until `is` returns something, and returns it. */
+export async function until(is) {
+  for (let tries = 0; tries < 1200; tries++) {
+    const found = await is();
+    if (found) return found;
+    await new Promise(resolve => setTimeout(resolve, 10));
+  }
+  throw new Error(`waited in vain for ${is}`);
 }
