@@ -13,8 +13,8 @@ use std::{
 
 use pyo3::prelude::*;
 
-/// Interval at which signals are handled. Ctrl-C should end a computation within 100 ms, of which
-/// [`GRACE`] is the other part.
+/// Interval at which signals are handled. Together with [`GRACE`], it limits the time until Ctrl-C
+/// ends a computation, which should be less than 100 ms. A shorter interval would cost more work.
 const INTERVAL: Duration = Duration::from_millis(20);
 
 /// Time that cancelled work gets to end, and to remove a temporary file. Work that takes longer is
@@ -40,16 +40,16 @@ pub fn cancellable<T: Send + 'static>(
     )
 }
 
-/// Runs `work` without the interpreter's lock, and returns its result. `interrupted` gets the
-/// exception that the handler of a signal raises. If it returns an exception, that is raised, and
-/// `work` is given up; if not, `work` goes on.
+/// Runs `work` without the interpreter's lock, and returns its result. If the handler of a signal
+/// raises an exception, `interrupted` gets it. If `interrupted` returns an exception, this is
+/// raised, and `work` is given up. If it returns `None`, `work` continues.
 pub fn run<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
     interrupted: impl Fn(PyErr) -> Option<PyErr> + Send,
 ) -> PyResult<T> {
     let (done, result) = mpsc::sync_channel(1);
-    // A thread of its own for each call: after a fork, the child process has none of its parent's.
+    // Each call starts its own thread. Threads of a pool would be missing in a forked process.
     let worker = thread::Builder::new().spawn(move || {
         // The receiver is gone if the work was given up.
         let _ = done.send(work());

@@ -1,8 +1,8 @@
 //! The compiled part of the Python module `pinhole`.
 //!
 //! In: texts, numbers and arrays that the Python part of the module has checked. Out: arrays of
-//! NumPy, and the JSON of the command line, which the Python part makes objects of. Everything that
-//! takes time runs on another thread without the interpreter's lock, and Ctrl-C ends it.
+//! NumPy, and the JSON of the command line, which the Python part converts to objects. Long
+//! computations run on another thread without the interpreter's lock, and Ctrl-C ends them.
 
 #![forbid(unsafe_code)]
 
@@ -25,7 +25,7 @@ fn program(py: Python<'_>, args: Vec<OsString>) -> PyResult<u8> {
     background::run(
         py,
         move || cli::run_with(args, &interrupt),
-        // The command ends by itself, after it has cleaned up.
+        // No exception is raised: the command cleans up and ends by itself.
         move |_| {
             pressed.press();
             None

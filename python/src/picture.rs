@@ -36,7 +36,7 @@ impl Pixels<'_> {
     }
 }
 
-/// The numbers of a picture: its rows from the top, and red, green and blue of each pixel.
+/// The values of a picture: the rows from the top and, for each pixel, red, green and blue.
 pub enum Numbers {
     /// Whole numbers of 8 bits, in sRGB.
     Bytes(Vec<u8>),
@@ -47,7 +47,8 @@ pub enum Numbers {
 }
 
 impl Numbers {
-    /// Returns a picture of the size of `part`, as it would be read from a file with these numbers.
+    /// Converts the values to a picture of the size of `part`, with the result that reading a file
+    /// with these values would have.
     pub fn picture(&self, part: Area) -> PyResult<film::Picture> {
         let (film, rounding) = match self {
             Self::Bytes(numbers) => (encoded(numbers, part)?, Rounding::Byte),
@@ -58,7 +59,7 @@ impl Numbers {
     }
 }
 
-/// Makes a film from whole numbers in sRGB. The greatest number of their type is white.
+/// Makes a film from integers in sRGB. The largest value of their type is white.
 fn encoded<T: Copy + Into<usize>>(numbers: &[T], part: Area) -> PyResult<Film> {
     let white = (1_usize << (8 * size_of::<T>())) - 1;
     let light = (0..=white).map(|number| srgb_to_linear(number as f64 / white as f64));

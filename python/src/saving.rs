@@ -23,7 +23,7 @@ use crate::scene::{Crop, Inner, Scene, Threads};
 
 /// Type of a picture's pixels, which determines the format of its file.
 trait FilePixel: Pixel + 'static {
-    /// Returns whether the format stores the scene's text.
+    /// Whether the format stores the scene's text.
     const STORES_TEXT: bool;
 
     /// Writes a part of a scene's picture from bands of rows.
@@ -35,7 +35,7 @@ trait FilePixel: Pixel + 'static {
     ) -> io::Result<()>;
 }
 
-/// PNG.
+/// PNG, which has 8 bits per channel here.
 impl FilePixel for [u8; 3] {
     const STORES_TEXT: bool = true;
 
@@ -50,7 +50,7 @@ impl FilePixel for [u8; 3] {
     }
 }
 
-/// OpenEXR.
+/// OpenEXR, which has 32-bit floats here.
 impl FilePixel for [f32; 3] {
     const STORES_TEXT: bool = false;
 
@@ -65,7 +65,8 @@ impl FilePixel for [f32; 3] {
     }
 }
 
-/// Renders a picture to a PNG file. Returns whether the file stores what it can of the scene.
+/// Renders a picture to a PNG file. Returns `false` if the scene's text or its settings are too
+/// long to be stored in the file.
 #[pyfunction]
 pub fn save_png(
     py: Python<'_>,
@@ -77,7 +78,7 @@ pub fn save_png(
     save::<[u8; 3]>(py, scene, path, crop, threads)
 }
 
-/// Renders a picture to an OpenEXR file, as [`save_png`] does.
+/// Renders a picture to an OpenEXR file. Returns `true`, since the format stores no text.
 #[pyfunction]
 pub fn save_exr(
     py: Python<'_>,
@@ -104,7 +105,7 @@ fn save<P: FilePixel>(
 }
 
 /// Writes a PNG file from an iterator over bands of rows, which are arrays of bytes. Returns
-/// whether the file stores what it can of the scene.
+/// `false` if the scene's text or its settings are too long to be stored in the file.
 #[pyfunction]
 pub fn write_png(
     py: Python<'_>,
@@ -115,7 +116,8 @@ pub fn write_png(
     write_bands::<u8>(py, scene, &path, bands)
 }
 
-/// Writes an OpenEXR file from arrays of floats, as [`write_png`] does.
+/// Writes an OpenEXR file from an iterator over bands of rows, which are arrays of floats. Returns
+/// `true`, since the format stores no text.
 #[pyfunction]
 pub fn write_exr(
     py: Python<'_>,
@@ -149,7 +151,7 @@ where
     })
 }
 
-/// Returns the next band of rows that an iterator of Python yields.
+/// Returns the next band of rows that a Python iterator yields, or `None` at its end.
 fn next_band<T: Element + Copy>(bands: &Bound<'_, PyIterator>) -> PyResult<Option<Film<[T; 3]>>>
 where
     [T; 3]: Pixel,
@@ -170,8 +172,8 @@ where
     .map_err(|error| PyMemoryError::new_err(error.to_string()))
 }
 
-/// Writes a picture's bands to a file, completely or not at all. Returns whether the file stores
-/// what it can of the scene.
+/// Writes a picture's bands to a file, completely or not at all. Returns `false` if the format
+/// stores the scene's text, but the text or the settings are too long for it.
 fn write<P: FilePixel>(
     scene: &Inner,
     path: &Path,

@@ -1,4 +1,4 @@
-//! A scene that was read, and what can be asked of it.
+//! A scene that was read, with its pictures and the answers about it.
 
 use std::{
     io::{self, Cursor},
@@ -33,7 +33,7 @@ use crate::{
     picture::{Pixels, array},
 };
 
-/// Makes an exception of the reason why a render gives no picture.
+/// Converts a failure to render to a Python exception.
 fn not_rendered(error: RenderError) -> PyErr {
     let message = error.to_string();
     match error {
@@ -44,8 +44,8 @@ fn not_rendered(error: RenderError) -> PyErr {
     }
 }
 
-/// Returns the text and the settings of the scene that a PNG carries, or `None` if the bytes are no
-/// PNG.
+/// Returns the text and the settings of the scene that a PNG contains, or `None` if the bytes are
+/// no PNG.
 #[pyfunction]
 pub fn carried(bytes: &[u8]) -> PyResult<Option<(String, Vec<String>)>> {
     if !bytes.starts_with(&film::SIGNATURE) {
@@ -57,7 +57,9 @@ pub fn carried(bytes: &[u8]) -> PyResult<Option<(String, Vec<String>)>> {
 }
 
 /// Reads a scene from the bytes of its text and from settings in the form of `--set`. Returns the
-/// scene, unless it has errors, and its problems: as a JSON array, and as a report for people.
+/// Reads a scene from the bytes of its text and from settings in the form of `--set`. Returns the
+/// scene, or `None` if it has errors. Also returns its problems twice: as a JSON array, and as a
+/// report for people.
 #[pyfunction]
 pub fn read(
     py: Python<'_>,
@@ -81,13 +83,13 @@ pub fn read(
 #[pyclass(frozen)]
 pub struct Scene(Arc<Inner>);
 
-/// What the threads that work on a scene share.
+/// Data that the threads working on a scene share.
 pub struct Inner {
     sources: Sources,
     data: SceneData,
-    /// The prepared scene, once something was rendered.
+    /// Scene prepared for the tracer; `None` before the first render.
     world: Mutex<Option<Arc<World>>>,
-    /// The exact picture with which the last picture was compared.
+    /// Exact picture with which the last picture was compared; `None` before the first comparison.
     reference: Mutex<Option<Arc<Reference>>>,
 }
 
@@ -172,7 +174,8 @@ impl Scene {
         })
     }
 
-    /// Judges a picture of another program. The part of the scene that it shows must have its size.
+    /// Judges a picture by another program. Its size must be that of `crop`, the part of the
+    /// scene's picture that it shows.
     fn grade(&self, py: Python<'_>, picture: Pixels<'_>, crop: Crop) -> PyResult<String> {
         let numbers = picture.copied()?;
         self.run(py, move |inner, cancel| {
@@ -195,7 +198,7 @@ impl Scene {
 }
 
 impl Scene {
-    /// Returns what threads share.
+    /// Returns the data that threads share.
     pub fn shared(&self) -> Arc<Inner> {
         Arc::clone(&self.0)
     }
@@ -319,9 +322,9 @@ fn control<'a>(threads: Threads, cancel: &'a AtomicBool) -> Control<'a> {
     }
 }
 
-/// Returns the cached value if it is suitable, and otherwise makes it. Nobody holds the lock while
-/// a value is made: two threads may make the same one, but a process that is forked meanwhile finds
-/// the lock free.
+/// Returns the cached value if it is suitable, and otherwise makes a new one. The lock is not held
+/// while a value is made. Therefore, two threads may make the same value, but the lock is free in a
+/// process that is forked meanwhile.
 fn cached<T>(
     cache: &Mutex<Option<Arc<T>>>,
     is_suitable: impl Fn(&T) -> bool,

@@ -1,4 +1,4 @@
-"""What the tests share: a scene, and the installed program."""
+"""Fixtures that all tests share: a scene, and the installed program."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ triangle Sail { centroid (0.2, 1, 0.6)  normal (0.3, 0, 1)  sides (2, 2, 1)  col
 checkerboard  { colors (gray, white) }
 """
 
-# A job in the background ignores Ctrl-C, and so would the processes that the tests start and end.
+# A job in the background ignores Ctrl-C, and the processes that it starts inherit this. The tests
+# interrupt such processes, so Ctrl-C is handled here in the usual way.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 Program = Callable[..., "subprocess.CompletedProcess[bytes]"]

@@ -1,4 +1,4 @@
-"""Problems, and answers about a scene: what the program says as JSON."""
+"""Tests that problems and answers about a scene are those that the program prints as JSON."""
 
 from __future__ import annotations
 

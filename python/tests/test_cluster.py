@@ -1,4 +1,4 @@
-"""The example of a cluster: its commands run here without Slurm, by a stand-in for `sbatch`."""
+"""Tests of the example of a cluster. A script that replaces `sbatch` runs its commands."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def shell(tmp_path: Path) -> Shell:
     path = f"{tmp_path / 'bin'}:{sysconfig.get_path('scripts')}:{os.environ['PATH']}"
 
     def start(command: str) -> subprocess.Popen[str]:
-        # A session of its own, so that a job is killed with its processes, as Slurm does.
+        # A new session, so that a job can be killed with all of its processes, as by Slurm.
         return subprocess.Popen(
             ["bash", "-c", command],
             cwd=tmp_path,
@@ -66,7 +66,7 @@ def output_of(process: subprocess.Popen[str], status: int = 0) -> str:
 
 
 def command(start: str) -> str:
-    """Returns the block of the page that begins with this text."""
+    """Returns the shell block of the example's README that begins with this text."""
     blocks = re.findall(r"```sh\n(.*?)```", (FOLDER / "README.md").read_text(), re.DOTALL)
     (block,) = (block for block in blocks if block.startswith(start))
     return str(block)

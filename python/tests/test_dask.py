@@ -1,4 +1,4 @@
-"""Scenes rendered by Dask, on one machine and by workers, one of which dies."""
+"""Tests of rendering by Dask: in this process, and by workers, one of which is killed."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def test_each_worker_reads_a_scene_once(client: Client) -> None:
 
 
 def kill_a_worker(client: Client, start: Callable[[], object], blocks: int) -> object:
-    """Calls `start`, and kills a worker as soon as the two of them hold some blocks."""
+    """Calls `start`, and kills a worker when both workers together hold `blocks` blocks."""
     pids = client.run(os.getpid)
     killed = []
 

@@ -1,4 +1,4 @@
-"""What a notebook shows: pictures, problems, the cell magic, and the notebooks of this folder."""
+"""Tests of what notebooks show, of the cell magic, and of the notebooks in `python/notebooks`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pictures: the bytes and numbers of the program."""
+"""Tests that pictures have the bytes and numbers that the program writes."""
 
 from __future__ import annotations
 
@@ -144,7 +144,8 @@ def test_what_cannot_be_rendered_is_refused_in_words(scene: pinhole.Scene, tmp_p
 def test_a_picture_is_saved_in_less_memory_than_it_has(
     python: Callable[[str], "subprocess.Popen[str]"], tmp_path: Path, ending: str, height: int
 ) -> None:
-    # A sky, of 288 MB as bytes or as floats.
+    # The picture shows only background. Its pixels would need 288 MB, whether they are bytes in the
+    # PNG or floats in the lower EXR.
     script = python(f"""
 import pinhole
 size = {{"image.width": 12000, "image.height": {height}, "sampler.per_pixel": 1}}

@@ -1,4 +1,4 @@
-"""Threads, processes, signals, and what a call costs."""
+"""Tests of threads, processes and signals, and of the overhead of a call."""
 
 from __future__ import annotations
 
@@ -122,7 +122,8 @@ def test_other_threads_of_python_go_on(scene: pinhole.Scene) -> None:
 )
 def test_ctrl_c_ends_a_call_within_100_ms(python: Python, tmp_path: Path, call: str) -> None:
     def latency() -> float:
-        # The delay lets the call begin. All processes of a machine have the same monotonic clock.
+        # The call begins during the pause before the signal. The script's time can be compared with
+        # this process's, since all processes of a machine have the same monotonic clock.
         script = python(f"""
 import pinhole, time
 scene = pinhole.Scene(TEXT, set={SLOW!r})
@@ -154,6 +155,6 @@ def test_a_small_call_costs_little() -> None:
         return min(times)
 
     scene = pinhole.Scene(TEXT, {"image.width": 320, "image.height": 180})
-    # What one pixel costs is nearly all overhead: of the call, and of starting threads.
+    # Nearly all of the time for one pixel is overhead of the call and of starting threads.
     pixel, whole = fastest(lambda: scene.render(crop=(0, 0, 1, 1))), fastest(scene.render)
     assert pixel < 0.3 * whole

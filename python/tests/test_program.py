@@ -1,4 +1,4 @@
-"""The program that the wheel installs."""
+"""Tests of the program that the wheel installs."""
 
 from __future__ import annotations
 

@@ -5,9 +5,9 @@
 >>> scene.render().shape
 (720, 1280, 3)
 
-Pictures are arrays of rows from the top, columns from the left, and red, green and blue. Those of
-whole numbers are in sRGB, as files and screens have them. Those of floats are in linear light from
-0 to 1, in which the mean of two colours is a mean of their numbers.
+A picture is an array with three axes: rows from the top, columns from the left, and red, green and
+blue. Integers are in sRGB, as in files and on screens. Floats are linear light from 0 to 1, in
+which the mean of two colours is the mean of their numbers.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 else:
 
     def __getattr__(name: str) -> Any:
-        """Imports a name when it is used first, so that the program starts without most of them."""
+        """Imports a name at its first use, so that the program starts without all modules."""
         if name not in __all__:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         homes = (import_module(home, __name__) for home in ("._scene", "._problems"))

@@ -1,4 +1,4 @@
-"""The compiled part of the module. It has no annotations: those of its callers are checked."""
+"""The compiled part of the module. It has no type annotations; the code that calls it has."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ import warnings
 
 
 def is_exr(path: str) -> bool:
-    """Returns whether the ending of a path stands for OpenEXR, or else for PNG."""
+    """Returns whether a path ends in `.exr` rather than `.png`. Any other ending is an error."""
     ending = os.path.splitext(path)[1].lower()
     if ending not in (".exr", ".png"):
         raise ValueError(

@@ -32,7 +32,7 @@ class Fix:
 
 @dataclass(frozen=True)
 class Label:
-    """A place that explains a problem. Lines and columns count from 1, columns in characters."""
+    """A place that explains a problem. Lines and columns start at 1; columns are in characters."""
 
     message: str
     line: int
@@ -52,7 +52,7 @@ class Problem:
     severity: str
     """`error` or `warning`."""
     code: str
-    """Kind of problem, such as `pinhole::unknown_field`; the program `explain`s it."""
+    """Kind of problem, such as `pinhole::unknown_field`. `pinhole explain` explains it."""
     message: str
     help: str | None
     labels: tuple[Label, ...]
@@ -91,7 +91,7 @@ class SceneError(ValueError):
         return self.problems.report.rstrip()
 
     def _render_traceback_(self) -> list[str]:
-        """Shows the report alone in a notebook: the calls that led to it explain nothing."""
+        """Shows only the report in a notebook; the Python calls do not help to find the problem."""
         return str(self).splitlines()
 
 

@@ -83,7 +83,7 @@ class Scene:
     def render(self, crop: Crop | None = None, threads: int | None = None) -> NDArray[np.uint8]:
         """Renders the picture, or a part of it, in sRGB.
 
-        `threads` is how many threads are used; the default is one per processor.
+        `threads` is the number of threads; by default, one per processor.
         """
         picture: NDArray[np.uint8] = self._native.render(*self._part(crop, threads))
         return picture
@@ -100,7 +100,7 @@ class Scene:
     ) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
         """Computes the means of the pixels without samples, in linear light.
 
-        Also returns a bound of each pixel's error: how far a channel may be from the truth.
+        Also returns an error bound for each pixel: how far a channel may be from the true mean.
         """
         exact: tuple[NDArray[np.float64], NDArray[np.float32]]
         exact = self._native.render_exact(*self._part(crop, threads))
@@ -141,7 +141,7 @@ class Scene:
     def grade(self, picture: Picture, crop: Crop | None = None) -> dict[str, Any]:
         """Finds the mistakes in a picture of this scene, or of a part of it.
 
-        Whole numbers of 8 or 16 bits count as sRGB, and floats as linear light. Returns what
+        Integers of 8 or 16 bits are read as sRGB, and floats as linear light. Returns what
         `pinhole diff PICTURE SCENE --format json` prints, without the names of the files.
         """
         import numpy as np
@@ -160,7 +160,7 @@ class Scene:
         return verdict
 
     def _part(self, crop: Crop | None, threads: int | None) -> tuple[list[int] | None, int | None]:
-        """Checks a crop and a number of threads."""
+        """Checks a crop and a number of threads. Returns them in the form for the compiled part."""
         if threads is not None and index(threads) < 1:
             raise ValueError(f"{threads} threads cannot render: it takes 1 or more")
         threads = None if threads is None else min(index(threads), 1024)
@@ -195,7 +195,7 @@ class Scene:
         return self._text, self._sets, self._name
 
     def __dask_tokenize__(self) -> tuple[str, ...]:
-        """Returns what distinguishes scenes, from which Dask names the results of its tasks."""
+        """Returns the data by which scenes differ. Dask names the results of its tasks by them."""
         return "pinhole.Scene", self._text, *self._sets, self._name
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -204,15 +204,15 @@ class Scene:
 
 @lru_cache(maxsize=8)
 def _unpickled(text: str, set: tuple[str, ...], name: str) -> Scene:
-    """Reads a scene that was pickled. A process that gets the same one again need not read it."""
+    """Reads a scene that was pickled. The cache avoids reading the same scene several times."""
     return Scene(text, set, name)
 
 
 def load(path: str | os.PathLike[str], set: Settings = ()) -> Scene:
-    """Reads a scene from a file: a `.scn`, or a PNG that Pinhole wrote, which carries its scene.
+    """Reads a scene from a file: a `.scn`, or a PNG by Pinhole, which contains its scene.
 
-    Settings come after those that a PNG carries. Of a PNG that shows a part of a picture, the whole
-    picture's scene is read. Raises `SceneError` if the scene has errors.
+    Settings are applied after those in a PNG. If a PNG shows only a part of a picture, the scene of
+    the whole picture is read. Raises `SceneError` if the scene has errors.
     """
     with open(path, "rb") as file:
         data = file.read()

@@ -70,8 +70,8 @@ def _blocks(scene: Scene, chunks: Chunks, method: Any, dtype: np.dtype[Any]) -> 
     rows, columns = (chunks, chunks) if isinstance(chunks, int) else chunks
     shape = (scene.height, scene.width, 3)
     sizes = da.core.normalize_chunks((rows, columns, 3), shape)
-    # A value of the graph, which each worker gets once. It is not scattered, since a worker that
-    # dies would take it along.
+    # The scene is a value of the task graph, so each worker gets it once. If it were scattered to a
+    # worker, it would be lost when this worker dies.
     shared = dask.delayed(scene, pure=True, traverse=False)
     return da.map_blocks(
         _block,
@@ -99,7 +99,8 @@ def _bands(picture: da.Array) -> Iterator[NDArray[Any]]:
     """Computes the rows of blocks from the top, and yields a few rows at a time."""
     ahead: deque[da.Array] = deque()
     for index in range(picture.numblocks[0]):
-        # A cluster starts to compute, and this process goes on. Without a cluster, it waits.
+        # If there is a cluster, it starts to compute, and this call returns at once. Without a
+        # cluster, the call returns when the blocks are computed.
         ahead.append(picture.blocks[index].persist())
         if len(ahead) > 1:
             yield from _pieces(ahead.popleft())
