@@ -32,6 +32,14 @@ const ENDLESS: f64 = 1e4;
 /// It is drawn longer or shorter than it is, so that it fits the drawing. Chosen by eye.
 const UP: f64 = 0.12;
 
+/// Minimum of a length or angle after a drag, as a fraction of its value before. A handle that is
+/// dragged past the point at which this value is zero stays there, as a slider does at its end.
+const SMALLEST: f64 = 0.01;
+
+/// Maximum angle of view after a drag, in degrees. At 180 degrees the view plane would pass through
+/// the eye.
+const WIDEST: f64 = 179.0;
+
 /// The scene's camera, in an observer's picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraOverlay {
@@ -267,12 +275,12 @@ pub fn moved_camera(
             ))
         }
     };
-    let angle = |axis: DVec3, normal: DVec3| {
+    let angle = |before: Angle, axis: DVec3, normal: DVec3| {
         let edge = seen.on_plane(to, eye, normal).map(|point| point - eye);
         let half = edge.map(|edge| trig::atan2(edge.dot(axis), edge.dot(own.ahead)));
-        let half = half.filter(|half| half.in_degrees() > 0.0);
         let half = half.ok_or("the angle is not seen there: turn the view")?;
-        Ok::<_, String>(Angle::from_degrees(2.0 * half.in_degrees()))
+        let degrees = (2.0 * half.in_degrees()).clamp(SMALLEST * before.in_degrees(), WIDEST);
+        Ok::<_, String>(Angle::from_degrees(degrees))
     };
     match (handle, camera.lens) {
         ("eye", _) => moved.eye = moved_point(at, to, along, seen)?,
@@ -282,10 +290,7 @@ pub fn moved_camera(
         }
         ("up", _) => moved.up = turned_vector(eye, camera.up, frustum.up, to, seen),
         ("d", lens) => {
-            let depth = along_line(eye, own.ahead)?;
-            if depth <= 0.0 {
-                return Err("the window stays in front of the eye".to_owned());
-            }
+            let depth = along_line(eye, own.ahead)?.max(SMALLEST * frustum.d);
             let opened = |slope: f64| {
                 let half = trig::atan2(slope * frustum.d, depth);
                 Angle::from_degrees(2.0 * half.in_degrees())
@@ -298,25 +303,22 @@ pub fn moved_camera(
         }
         ("view_height", _) => {
             let half = along_line(frustum.at(DVec2::ZERO, frustum.d), own.top)?;
-            if half <= 0.0 {
-                return Err("the upper edge of the window stays above its middle".to_owned());
-            }
-            moved.view_height = 2.0 * half;
+            moved.view_height = (2.0 * half).max(SMALLEST * camera.view_height);
         }
-        ("fov", _) => moved.lens = Lens::Fov(angle(own.top, own.right)?),
-        ("hfov", _) => moved.lens = Lens::HorizontalFov(angle(own.right, own.top)?),
+        ("fov", Lens::Fov(before)) => moved.lens = Lens::Fov(angle(before, own.top, own.right)?),
+        ("hfov", Lens::HorizontalFov(before)) => {
+            moved.lens = Lens::HorizontalFov(angle(before, own.right, own.top)?);
+        }
+        // The planes keep a part of their distance from each other.
         ("near", _) => {
-            moved.near = along_line(eye, frustum.towards(LOWER))?.max(0.0);
-            if camera.far.is_some_and(|far| far <= moved.near) {
-                return Err("the near plane stays in front of the far one".to_owned());
-            }
+            let most = camera.far.map(|far| far - SMALLEST * (far - camera.near));
+            let near = along_line(eye, frustum.towards(LOWER))?.max(0.0);
+            moved.near = near.min(most.unwrap_or(f64::INFINITY));
         }
         _ => {
-            let far = along_line(eye, frustum.towards(LOWER))?;
-            if far <= camera.near {
-                return Err("the far plane stays behind the near one".to_owned());
-            }
-            moved.far = Some(far);
+            let before = camera.far.unwrap_or(camera.near);
+            let least = camera.near + SMALLEST * (before - camera.near);
+            moved.far = Some(along_line(eye, frustum.towards(LOWER))?.max(least));
         }
     }
     if FieldOwner::Camera(moved).is_possible() {
