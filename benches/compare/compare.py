@@ -2,10 +2,12 @@
 """Compares Pinhole, POV-Ray and Mitsuba 3 on the same scenes: compare.py figure|many SCENE...
 [options]
 
+With `--rival`, `figure` also measures `rival.c`, a program for figure 9.9 alone.
+
 Times whole processes in turns, from the start to the picture on disk, as PNG of 8 bits, on two
 threads: CPU seconds (user and system time of all threads), wall time and peak memory. `figure` also
 measures each picture's error, against Pinhole's exact one and in linear light, from another run
-that writes OpenEXR. Nothing but Python and the three programs is needed; see README.md in the
+that writes OpenEXR (the rival's error, from its PNG). Nothing but Python and the three programs is needed; see README.md in the
 folder above."""
 
 import argparse
@@ -30,12 +32,13 @@ def main():
     parser.add_argument("--pinhole", default="pinhole", help="the program")
     parser.add_argument("--povray", default="povray", help="the program")
     parser.add_argument("--mitsuba", default=sys.executable, metavar="PYTHON", help="the Python that has Mitsuba")
+    parser.add_argument("--rival", help="the program; README.md in the folder above says how it is built")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--quick", action="store_true", help="one round of a small picture, to see that all works")
     options = parser.parse_args()
     if options.quick:
         options.rounds = 1
-    for program in ["pinhole", "povray", "mitsuba"]:
+    for program in ["pinhole", "povray", "mitsuba"] + ["rival"] * (options.rival is not None):
         found = shutil.which(getattr(options, program))
         if found is None:
             sys.exit(f"{getattr(options, program)} is not there")
@@ -99,6 +102,9 @@ def figure(options, scene, sets, size):
         chosen = [f"sampler.method={method}", f"sampler.per_pixel={samples}"]
         yield f"Pinhole, {method}, {samples}", pinhole(options, scene, sets, chosen), False
     yield "Pinhole, exact", pinhole(options, scene, sets, ["sampler.method=exact"]), False
+    if options.rival is not None and not options.quick:
+        for samples in [46, 64]:
+            yield f"rival, {samples}", rival(options, samples), False
     yield "POV-Ray, every pixel, 4 x 4", povray(options, size, 0, 4), False
     yield "POV-Ray, every pixel, 8 x 8", povray(options, size, 0, 8), False
     yield "POV-Ray, every pixel, 9 x 9", povray(options, size, 0, 9), False
@@ -125,6 +131,11 @@ def pinhole(options, scene, sets, chosen):
     for value in chosen:
         arguments += ["--set", value]
     return lambda picture: [*arguments, "-o", picture]
+
+
+def rival(options, samples):
+    """Returns the command for the rival, which knows only figure 9.9 at 1280 x 720 pixels."""
+    return lambda picture: [options.rival, str(samples), str(THREADS), picture, "-"]
 
 
 def povray(options, size, threshold, side, more=()):
@@ -186,12 +197,13 @@ def measure_errors(options, ways, folder):
     run(as_exact(exact), folder, False)
     errors = {}
     for name, command, _ in ways:
-        arguments = command("picture.exr")
+        picture = "picture.png" if name.startswith("rival") else "picture.exr"
+        arguments = command(picture)
         _, text = run(arguments + ["again"] if "LLVM" in name else arguments, folder, False)
         if "LLVM" in name:
             print(f"{name}: rendered once more in {told(text)['again']:.2f} s of wall time", file=sys.stderr)
         said = subprocess.run(
-            [options.pinhole, "diff", "picture.exr", exact, "--format", "json"], cwd=folder, stdout=subprocess.PIPE
+            [options.pinhole, "diff", picture, exact, "--format", "json"], cwd=folder, stdout=subprocess.PIPE
         )
         errors[name] = json.loads(said.stdout)["rmse"]
     return errors

@@ -68,15 +68,21 @@ fn assert_stops_early<T>(what: &str, work: impl Fn(&AtomicBool) -> Result<T, Can
 
 #[test]
 fn reading_stops_soon_after_cancellation_in_every_mode() {
-    let good = spheres(1_000);
-    let lets = (0..1_500).map(|index| format!("let a_{index} = 1 + 2 * {index}\n"));
+    // Large enough that each reading takes some tens of milliseconds, which is much longer than the
+    // start of a thread.
+    let good = spheres(20_000);
+    let lets = (0..6_000).map(|index| format!("let a_{index} = 1 + 2 * {index}\n"));
     let lets: String = lets.collect();
     let ball = "sphere Ball { center (0, 0, 0) }";
     for (what, text, set) in [
         ("in parts", good.clone(), None),
         ("without braces", format!("{CAMERA}{lets}{ball}"), None),
         ("as a whole", format!("{good}sphere {{ radus 2 }}"), None),
-        ("with many mistakes", good.replace("radius", "radus"), None),
+        (
+            "with many mistakes",
+            spheres(1_000).replace("radius", "radus"),
+            None,
+        ),
         (
             "with an argument",
             format!("{good}{ball}"),
