@@ -99,7 +99,10 @@ function down(event: KeyboardEvent): void {
   } else {
     const control = controlOf(whole);
     if (control === undefined) return;
-    control.click();
+    const part = control.closest(".of-dock");
+    if (part !== null && getComputedStyle(part).display === "none") {
+      say("The part below the picture needs a wider or higher window.", "warning");
+    } else control.click();
   }
   event.preventDefault();
 }

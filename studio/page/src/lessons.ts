@@ -9,7 +9,7 @@ import { editor } from "./editor";
 import { files } from "./files";
 import { frames } from "./frames";
 import { overlays } from "./overlays";
-import { Refusal, type Judged, type LessonText } from "./protocol";
+import { Refusal, type Condition, type Judged, type LessonText } from "./protocol";
 import { sanitized } from "./sanitize";
 import { say } from "./status";
 import { setText } from "./visible";
@@ -165,15 +165,28 @@ function show(): void {
   const number = lessons.indexOf(current);
   setText(title, number === 0 ? current.title : `${number}. ${current.title}`);
   setText(byId("lesson-step"), `step ${step + 1} of ${steps.length}`);
-  body.replaceChildren(...(steps[step] ?? []).map(token => isCheck(token)
-    ? create("ul", "conditions") : Object.assign(create("div"),
-      { innerHTML: sanitized(marked.parser([token])) })));
+  body.replaceChildren(...elements(steps[step] ?? []));
   body.scrollTop = 0;
   back.disabled = step === 0;
   const isLast = step === steps.length - 1;
   setText(on, isLast ? "Next lesson ▸" : "Next ▸");
   on.disabled = isLast && following() === null;
   showConditions();
+}
+
+/** Returns an element for each token of a step. That of a check is empty. */
+const elements = (tokens: Token[]): HTMLElement[] => tokens.map(token => isCheck(token)
+  ? create("ul", "conditions")
+  : Object.assign(create("div"), { innerHTML: sanitized(marked.parser([token])) }));
+
+/** Returns the open lesson as a whole, with all of its steps, for paper. Returns nothing if no
+ * lesson is open. */
+export function lessonOnPaper(): HTMLElement[] {
+  if (section.hidden || isList || current === null) return [];
+  const tokens = current.steps.flat();
+  const all = elements(tokens);
+  fill(tokens, all);
+  return [create("h2", "", title.textContent), ...all];
 }
 
 /** Returns whether the engine reads conditions in the block. It does so only if the fence is at the
@@ -212,29 +225,36 @@ function choose(i: number): void {
  * conditions of the lesson hold, says that it is solved. */
 function showConditions(): void {
   if (isList || current === null) return;
-  // The engine may read a block that the page does not show, such as one in an HTML comment.
-  // Therefore, a block is found by its conditions, not by its number.
-  const asked = (current.steps[step] ?? []).filter(isCheck).map(token => {
-    const wanted = String(conditionsIn(token));
-    return judged?.checks.find(block =>
-      String(block.map(it => bare(it.condition + it.words))) === wanted) ?? [];
-  });
-  [...body.querySelectorAll(".conditions")].forEach((block, i) => {
-    block.replaceChildren(...(asked[i] ?? []).map(it => {
-      const item = create("li", it.holds ? "holds" : "");
-      const found = it.start === null ? it.found : `${it.found}, at the start ${it.start}`;
-      item.append(create("span", "condition-mark", it.holds ? "✓" : "○"),
-        create("span", "", it.words || it.condition));
-      if (!/^(true|false)$/.test(it.found)) item.append(create("span", "found", `now ${found}`));
-      item.firstElementChild?.setAttribute("aria-label", it.holds ? "holds:" : "does not hold:");
-      item.firstElementChild?.setAttribute("role", "img");
-      item.title = it.condition;
-      return item;
-    }));
-  });
-  const all = asked.flat();
+  const all = fill(current.steps[step] ?? [], [...body.children]);
   setText(state, judged?.holds ? "Solved. ✓"
     : all.length > 0 ? `${all.filter(it => it.holds).length} of ${all.length} hold` : "");
+}
+
+/** Shows the conditions of each check among the tokens of a step in its element, and whether they
+ * hold. Returns all conditions. */
+function fill(tokens: Token[], elements: Element[]): Condition[] {
+  return tokens.flatMap((token, i) => {
+    if (!isCheck(token)) return [];
+    // The engine may read a block that the page does not show, such as one in an HTML comment.
+    // Therefore, a block is found by its conditions, not by its number.
+    const wanted = String(conditionsIn(token));
+    const found = judged?.checks.find(block =>
+      String(block.map(it => bare(it.condition + it.words))) === wanted) ?? [];
+    elements[i]?.replaceChildren(...found.map(condition));
+    return found;
+  });
+}
+
+function condition(it: Condition): HTMLElement {
+  const item = create("li", it.holds ? "holds" : "");
+  const found = it.start === null ? it.found : `${it.found}, at the start ${it.start}`;
+  item.append(create("span", "condition-mark", it.holds ? "✓" : "○"),
+    create("span", "", it.words || it.condition));
+  if (!/^(true|false)$/.test(it.found)) item.append(create("span", "found", `now ${found}`));
+  item.firstElementChild?.setAttribute("aria-label", it.holds ? "holds:" : "does not hold:");
+  item.firstElementChild?.setAttribute("role", "img");
+  item.title = it.condition;
+  return item;
 }
 
 /** Returns the number of the lesson after the current one. Returns null after the last lesson, and

@@ -15,7 +15,7 @@ import { glass } from "./glass";
 import { hoverAgain } from "./hover";
 import { hintField, openSwatch, refreshHints } from "./hints";
 import "./layout";
-import { followAddress, lessonChanged, startLessons } from "./lessons";
+import { followAddress, lessonChanged, lessonOnPaper, startLessons } from "./lessons";
 import { numberControls } from "./numbers";
 import { listObjects, refreshOutlines } from "./outlines";
 import { outside } from "./outside";
@@ -196,6 +196,7 @@ addEventListener("beforeprint", () => {
   place();
   setText(byId("print-text"), [`${files.at.name}, ${new Date().toLocaleString()}`,
     ...firstError(), "", editor.text].join("\n"));
+  byId("print-lesson").replaceChildren(...lessonOnPaper());
 });
 addEventListener("afterprint", () => {
   document.body.classList.remove("paper");

@@ -95,8 +95,16 @@ export interface LessonText { name: string; text: string; start: string }
  * unless the condition compares the two. */
 export interface Judged {
   holds: boolean;
-  checks: { condition: string; words: string; found: string; start: string | null;
-    holds: boolean }[][];
+  checks: Condition[][];
+}
+
+/** A condition of a lesson, and whether the scene meets it. */
+export interface Condition {
+  condition: string;
+  words: string;
+  found: string;
+  start: string | null;
+  holds: boolean;
 }
 
 /** The host's file. `text` is null if the file does not exist or cannot be read. */

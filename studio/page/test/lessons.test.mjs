@@ -47,6 +47,29 @@ test("a lesson is opened, done with the mouse, and left, and no text is lost", a
   assert.deepEqual(page.complaints, []);
 });
 
+test("the printed page has the open lesson as a whole", async t => {
+  const page = await open(await launch(t), await host(t));
+  const paper = async () => {
+    await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+    await page.emulateMedia({ media: "print" });
+    const said = await page.locator("#print-lesson").innerText();
+    await page.emulateMedia({ media: null });
+    await page.evaluate(() => dispatchEvent(new Event("afterprint")));
+    return said;
+  };
+  assert.equal(await paper(), "");
+  await choose(page, 1);
+  await until(page, "");
+  await page.waitForTimeout(500);
+  const said = await paper();
+  // The title, all steps, and each condition with its mark.
+  for (const heading of ["1. The view plane", ...read(names[0], "md").match(/(?<=^## ).*$/gm)]) assert.ok(said.includes(heading), `${heading} in\n${said}`);
+  assert.equal(said.match(/○/g).length, 3);
+  assert.ok(await page.isHidden("#print-lesson"));
+  await page.click("#lesson-close");
+  assert.equal(await paper(), "");
+});
+
 test("Undo stays in a lesson, and each lesson keeps its text until the page is reloaded", async t => {
   const page = await open(await launch(t), await host(t));
   const mine = FIGURE.replace("radius 1", "radius 1.5");
@@ -78,7 +101,8 @@ test("Undo stays in a lesson, and each lesson keeps its text until the page is r
   await andFinished(page, () => page.goBack());
   assert.ok(await page.isHidden("#lesson"));
   assert.equal(await text(page), mine);
-  assert.ok(await page.isHidden("#draft-bar"));
+  // Drafts are compared with the text half a second after its last change.
+  await page.waitForSelector("#draft-bar", { state: "hidden", timeout: 5000 });
   assert.deepEqual(page.complaints, []);
 });
 
@@ -271,7 +295,10 @@ test("a teacher's lesson runs, with its own scene or a student's, and shows no f
   assert.match(await other.textContent("#lesson-body li:first-child"), /Mine/);
   await andFinished(other, () => other.click("#lesson-body li:nth-child(2) button"));
   assert.equal(await text(other), read(names[0], "scn"));
-  assert.deepEqual([page.complaints, other.complaints], [[], []]);
+  // HTML is parsed in a document without a window, where no handler can run. The browser reports
+  // handlers even there.
+  const complaints = [page, other].flatMap(({ complaints }) => complaints);
+  assert.deepEqual(complaints.filter(it => !it.startsWith("Executing inline event handler violates")), []);
 });
 
 /** Starts a host of a teacher's lesson, for a student's file or a new scene. */
@@ -416,7 +443,7 @@ test("the static page has the lessons, and its engine judges them", { skip }, as
   // A condition of this lesson is about the error, for which the engine computes an exact picture.
   await choose(page, 7);
   await last(page);
-  await until(page, "3 of 5 hold");
+  await until(page, "3 of 4 hold");
   await andFinished(page, () => type(page, read(names[6], "solution.scn")));
   await until(page, "Solved.");
   assert.deepEqual(page.complaints, []);

@@ -76,6 +76,22 @@ test("each handle of the camera changes its own field", async t => {
   }
 });
 
+test("a window dragged past the eye stays just in front of it, however fast, and follows the pointer back", async t => {
+  for (const steps of [2, 20]) {
+    const page = await open(await launch(t), await host(t));
+    await outside(page);
+    const [from, eye] = [await center(named(page, "d")), await center(named(page, "eye"))];
+    const past = [0, 1].map(axis => 3 * (eye[axis] - from[axis]));
+    await hand(page, from, past, { steps, hold: true });
+    await rested(page);
+    assert.equal(number(await text(page), "d"), 0.03, "a hundredth of 2.75, in steps of 0.01");
+    await page.mouse.move(...from, { steps: 5 });
+    await page.mouse.up();
+    await rested(page);
+    assert.ok(Math.abs(number(await text(page), "d") - 2.75) < 0.06, await text(page));
+  }
+});
+
 test("the window and its edge change the fov of a camera that has one", async t => {
   const page = await open(await launch(t), await host(t, FIGURE.replace("d      2.75", "fov    40deg")));
   await outside(page);
@@ -197,6 +213,15 @@ test("it is hidden and shown by a button, the menu and a key, which is remembere
   await outside(page);
   await menu(page, "Show", "#outside-shown");
   assert.ok(await page.isHidden("#outside"));
+  // A small window has no room for it, and the page says so.
+  for (const key of ["u", "g"]) {
+    await page.setViewportSize({ width: 700, height: 700 });
+    await page.focus("#stage");
+    await page.keyboard.press(key);
+    assert.match(await page.textContent("#said"), /needs a wider or higher window/);
+    await page.setViewportSize({ width: 1280, height: 800 });
+    assert.ok(await page.isHidden("#dock"), key);
+  }
 });
 
 test("without a camera, or with an error, it keeps what it had, and says so", async t => {

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { FIGURE, finished, hand, handle, host, launch, open, rendered, rested, tab, text, type } from "./helpers.mjs";
+import { andFinished, FIGURE, finished, hand, handle, host, launch, open, rendered, rested, site, tab, text, type } from "./helpers.mjs";
 
 const number = (text, pattern) => Number(new RegExp(`${pattern}\\s*(-?[\\d.e-]+)`).exec(text)[1]);
 
@@ -233,30 +233,35 @@ async function animation(page, bytes) {
   }, bytes.toString("base64"));
 }
 
-test("a recorded number is an animation of its whole range, of full pictures, and the text stays", async t => {
-  const small = scene("let r = 1 // [0.5:0.25:2]", "radius 1", "radius r").replace("width 1280  height 720", "width 320  height 180");
-  const started = await host(t, small);
-  const page = await open(await launch(t), started);
-  await page.waitForSelector(".slider-row");
-  const [download] = await Promise.all([page.waitForEvent("download"), page.click('[aria-label="Record r"]')]);
-  assert.equal(download.suggestedFilename(), "scene-r.png");
-  await page.waitForFunction(() => /scene-r\.png is downloaded/.test(document.querySelector("#said").textContent));
-  assert.ok(await page.isHidden("#rendering"));
-  assert.equal(await page.locator(".record[aria-pressed]").count(), 0);
-  const { animated, repetitionCount, frames } = await animation(page, readFileSync(await download.path()));
-  assert.ok(animated && repetitionCount === Infinity, `${repetitionCount}`);
-  assert.equal(frames.length, 7);
-  const time = frames.reduce((sum, it) => sum + it.time, 0);
-  assert.ok(Math.abs(time - 4000) < 10, `${time}`);
-  // Each picture is that of the program, at the scene's own size and samples.
-  for (const [i, frame] of frames.entries()) {
-    const alone = await animation(page, rendered(started.folder, small.replace("let r = 1", `let r = ${0.5 + 0.25 * i}`)));
-    assert.deepEqual([frame.size, frame.digest], [[320, 180], alone.frames[0].digest], `${i}`);
-  }
-  assert.equal(new Set(frames.map(it => it.digest)).size, 7);
-  assert.equal(await text(page), small);
-  assert.ok(await page.isDisabled("#undo"));
-});
+// The program renders a recording on several threads, the engine of the static page in slices.
+for (const isStatic of [false, true]) {
+  const skip = isStatic && process.env.SITE === undefined ? "SITE names no folder" : false;
+  test(`a number recorded in ${isStatic ? "the static page" : "the program's page"} is an animation of its whole range, of full pictures, and the text stays`, { skip }, async t => {
+    const small = scene("let r = 1 // [0.5:0.25:2]", "radius 1", "radius r").replace("width 1280  height 720", "width 320  height 180");
+    const started = await host(t, small);
+    const page = await open(await launch(t), isStatic ? await site(t, process.env.SITE) : started);
+    if (isStatic) await andFinished(page, () => type(page, small));
+    await page.waitForSelector(".slider-row");
+    const [download] = await Promise.all([page.waitForEvent("download"), page.click('[aria-label="Record r"]')]);
+    assert.equal(download.suggestedFilename(), "scene-r.png");
+    await page.waitForFunction(() => /scene-r\.png is downloaded/.test(document.querySelector("#said").textContent));
+    assert.ok(await page.isHidden("#rendering"));
+    assert.equal(await page.locator(".record[aria-pressed]").count(), 0);
+    const { animated, repetitionCount, frames } = await animation(page, readFileSync(await download.path()));
+    assert.ok(animated && repetitionCount === Infinity, `${repetitionCount}`);
+    assert.equal(frames.length, 7);
+    const time = frames.reduce((sum, it) => sum + it.time, 0);
+    assert.ok(Math.abs(time - 4000) < 10, `${time}`);
+    // Each picture is that of the program, at the scene's own size and samples.
+    for (const [i, frame] of frames.entries()) {
+      const alone = await animation(page, rendered(started.folder, small.replace("let r = 1", `let r = ${0.5 + 0.25 * i}`)));
+      assert.deepEqual([frame.size, frame.digest], [[320, 180], alone.frames[0].digest], `${i}`);
+    }
+    assert.equal(new Set(frames.map(it => it.digest)).size, 7);
+    assert.equal(await text(page), small);
+    if (!isStatic) assert.ok(await page.isDisabled("#undo"));
+  });
+}
 
 test("a recording has at most 60 pictures, tells its progress, and ends by Escape or its button", async t => {
   const page = await open(await launch(t), await host(t, scene("let r = 1 // [0.5:0.001:2]", "radius 1", "radius r")));
