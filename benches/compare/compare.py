@@ -62,7 +62,7 @@ def compare(options, scene, folder):
     ways = list((figure if options.what == "figure" else many)(options, scene, sets, size))
     errors = {}
     if options.what == "figure":
-        errors = measure_errors(options, ways, folder)
+        errors = measure_errors(options, ways, scene, folder)
     measured = {name: [] for name, *_ in ways}
     phases = {name: [] for name, *_ in ways}
     others, loads = [], []
@@ -191,26 +191,35 @@ def told(text):
     return seconds
 
 
-def measure_errors(options, ways, folder):
+def measure_errors(options, ways, scene, folder):
     exact = os.path.join(folder, "exact.exr")
     as_exact = dict((name, command) for name, command, _ in ways)["Pinhole, exact"]
     run(as_exact(exact), folder, False)
+    # The rival has the figure's camera with an angle instead of `d`, and writes PNG only.
+    angle = os.path.join(folder, "angle.scn")
+    with open(scene) as read, open(angle, "w") as write:
+        write.write(re.sub(r"\bd\s+2\.75", "fov 40deg", read.read()))
+    exact_of_rival = os.path.join(folder, "exact_of_rival.exr")
+    run([options.pinhole, "render", angle, "--set", "sampler.method=exact", "-o", exact_of_rival], folder, False)
     errors = {}
     for name, command, _ in ways:
-        picture = "picture.png" if name.startswith("rival") else "picture.exr"
+        is_rival = name.startswith("rival")
+        picture = "picture.png" if is_rival else "picture.exr"
         arguments = command(picture)
         _, text = run(arguments + ["again"] if "LLVM" in name else arguments, folder, False)
         if "LLVM" in name:
             print(f"{name}: rendered once more in {told(text)['again']:.2f} s of wall time", file=sys.stderr)
         said = subprocess.run(
-            [options.pinhole, "diff", picture, exact, "--format", "json"], cwd=folder, stdout=subprocess.PIPE
+            [options.pinhole, "diff", picture, exact_of_rival if is_rival else exact, "--format", "json"], cwd=folder, stdout=subprocess.PIPE
         )
         errors[name] = json.loads(said.stdout)["rmse"]
     return errors
 
 
 def spread(values):
-    return f"{statistics.median(values):.2f} ({min(values):.2f} to {max(values):.2f})"
+    median = statistics.median(values)
+    digits = 3 if median < 1 else 2
+    return f"{median:.{digits}f} ({min(values):.{digits}f} to {max(values):.{digits}f})"
 
 
 main()
