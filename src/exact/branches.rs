@@ -15,19 +15,19 @@ use crate::{
 
 use super::conic_segment::Arc;
 
-/// Maximum error of an arc's area, as computed in `f64`, divided by the arc's width in pixels.
-/// Above it, the arc is computed again in double-double. With this value, all arcs of a curve
-/// across the pixel contribute at most 4e-15 square pixels to the error, far below the default
-/// tolerance of 9e-10.
+/// Maximum error of an arc's area, as computed in `f64`, divided by the arc's width in pixels. If
+/// the error is larger, the arc is computed again in double-double. With this value, all arcs of a
+/// curve across the pixel contribute at most 4e-15 square pixels to the error, far below the
+/// default tolerance of 9e-10.
 const ARC_TOLERANCE: f64 = 32.0 * f64::UNIT;
 
 /// Maximum |dy/dx| of a line that is treated as a function y(x). A steeper line is treated as
 /// vertical, because its x changes by less than eight unit roundoffs across the pixel.
 const MAX_SLOPE: f64 = (1u64 << 50) as f64;
 
-/// Relative distance from the pixel beyond which a branch of a conic (one of its two functions
-/// y(x)) is ignored. The unit is the branch's largest |y|, but at least one pixel. The value is
-/// millions of times the rounding errors of y, so that no branch inside the pixel is ignored.
+/// Margin around the pixel. A branch of a conic (one of its two functions y(x)) beyond this margin
+/// is ignored. The unit is the branch's largest |y| or one pixel, whichever is greater. The value
+/// is millions of times the rounding errors of y, so that no branch inside the pixel is ignored.
 const OUTSIDE_MARGIN: f64 = 1.0 / (1u64 << 30) as f64;
 
 /// A curve as a function y(x).
@@ -195,9 +195,9 @@ impl<'a> ConicSpan<'a> {
         if !y[1].is_finite() {
             return None;
         }
-        // If the branch is curved in one direction only, its distance from the chord is at most
-        // twice `sagitta`, the distance in the middle. So if its two ends and its middle are all
-        // outside the pixel by more than twice `sagitta`, the whole branch is outside.
+        // A convex or concave branch is nowhere farther from its chord than twice `sagitta`, its
+        // distance from the chord in the middle. If its two ends and its middle are all outside the
+        // pixel by more than twice `sagitta`, the whole branch is therefore outside.
         let sagitta = y[1] - 0.5 * (y[0] + y[2]);
         let size = y.iter().fold(1.0, |size: f64, y| size.max(y.abs()));
         let beyond = 0.5 + 2.0 * sagitta.abs() + OUTSIDE_MARGIN * size;
@@ -279,7 +279,7 @@ struct Tangents {
     /// Square of the arc's weight. If the arc is written as a rational quadratic Bézier curve whose
     /// end points have the weight 1, the weight of its control point is the arc's weight.
     w2: f64,
-    /// Maximum error of the area between the arc and its chord.
+    /// Maximum error of the area between the arc and its chord, in square pixels.
     off: f64,
 }
 
@@ -418,8 +418,8 @@ impl Section {
     pub fn overlap(&self, other: &Self, left: f64, right: f64) -> f64 {
         let controls = [self, other].map(|section| section.arc.map(|(_, arc)| arc.control.x));
         let places = [Some(left), controls[0], controls[1], Some(right)];
-        // The bounds of both curves are linear in x between the ends and the control points, so
-        // that their difference is greatest at one of these x.
+        // Between the ends and the control points, the bounds of both curves are linear in x. Their
+        // difference is therefore greatest at an end or a control point.
         let hulls = places
             .into_iter()
             .flatten()
@@ -429,21 +429,23 @@ impl Section {
         hulls.min(rise.unwrap_or(f64::INFINITY))
     }
 
-    /// Returns two bounds for arcs over the same range of x: how far this arc rises above `other`,
-    /// and how far the two are apart in y. Returns `None` unless both curves are arcs that bulge to
-    /// the same side. The bounds are tight if the arcs are nearly parallel or nearly coincide.
+    /// Returns two bounds for arcs over the same range of x. The first is how far this arc rises
+    /// above `other`. The second is the distance of the two arcs in y. Returns `None` unless both
+    /// curves are arcs that bulge to the same side. The bounds are tight if the arcs are nearly
+    /// parallel or nearly coincide.
     fn parallel_bounds(&self, other: &Self) -> Option<[f64; 2]> {
-        // Compares points of the two arcs with the same curve parameter. The height of a vector is
-        // its y minus that of the vector along this arc's chord with the same x. If the weights are
-        // equal, a point is the same weighted mean of the control points in each arc. The height
-        // between the points is then at most that between two control points. Unequal weights move
-        // a point by at most their difference times the length of a side of the control polygon. A
-        // difference in x changes y by at most its product with the steepest slope.
+        // Points of the two arcs with the same curve parameter are compared. The height of a vector
+        // (x, y) is y − s·x, where s is the slope of this arc's chord. If the weights of the arcs
+        // are equal, the vector between two such points is a weighted mean of the vectors between
+        // corresponding control points, so its height is at most the largest of theirs. If the
+        // weights differ, a point moves by at most their difference times the longest side of the
+        // control polygon. The two points may also differ in x. This changes the height by at most
+        // the difference times the steepest slope.
         //
         // Rounding errors move a point by less than the sum of two terms. The first is eight times
         // the error of the arc's area, divided by the arc's width. The second is the rounding error
-        // of x, times the slope of the steepest tangent. The second is needed because rounding may
-        // move the control point of a narrow arc along the arc, which hardly changes the area.
+        // of x, times the slope of the steepest tangent. The second term is needed because the
+        // control point of a narrow arc may move along the arc, which hardly changes the area.
         let ((up, a), (other_up, b)) = (self.arc.as_ref()?, other.arc.as_ref()?);
         if up != other_up {
             return None;

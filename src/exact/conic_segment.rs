@@ -4,9 +4,9 @@
 //! In: an arc as a rational quadratic Bézier curve. Out: the segment's area in closed form, and the
 //! integral of the board's sign over the segment. For the integral, the arc is cut wherever it
 //! crosses a line of the board. The segment of each piece then lies in one square, and the chords
-//! of the pieces bound a convex polygon. Segments below a minimum area are neglected, so that their
-//! number is limited towards the horizon. The error bound includes the neglected areas and the
-//! rounding errors of positions.
+//! of the pieces bound a convex polygon. Near the horizon, an arc may cross very many lines.
+//! Segments below a minimum area are therefore neglected. The error bound includes the neglected
+//! areas and the rounding errors of positions.
 
 use glam::DVec2;
 
@@ -16,13 +16,13 @@ use super::{
 };
 
 /// Maximum of |1 − w²| at which the area of an arc of weight w is computed by a series. Above this
-/// maximum, a closed formula is used, which loses digits near w = 1, a parabola. The first of the
-/// terms that the series omits is at most 0.36³⁴ = 8e-16.
+/// maximum, a closed formula is used, which loses digits near w = 1, a parabola. The first omitted
+/// term of the series is at most 0.36³⁴ = 8e-16.
 const NEAR_PARABOLA: f64 = 0.36;
 
-/// Maximum number of a board's lines at which an arc is cut into pieces. If more lines cross the
-/// arc, it is halved first. Measured: with 48, boards of small squares behind spheres take up to 50
-/// % longer.
+/// Maximum number of lines of a board along which an arc is cut into pieces at once. If more lines
+/// cross the arc, it is halved first. Measured: with 48 instead of 12, boards of small squares
+/// behind spheres take up to 50 % longer.
 const MAX_LINES: f64 = 12.0;
 /// Maximum total area of the segments (between arc and chord) of an arc's two halves, divided by
 /// the area of the whole arc's segment. A larger quotient shows that numbers are too large or too
@@ -66,12 +66,14 @@ impl Arc {
         let area = 0.5 * (products[0] - products[1]).abs() * share;
         BoundedSum {
             value: area,
-            // The area is half the difference of `products`, times `share`, the share of the
-            // triangle that the segment covers. `share` is computed with up to ten roundings. At |1
-            // − w²| = `NEAR_PARABOLA`, the difference θ − sin θ·cos θ in `share` is only a quarter
-            // of θ, so that the roundings of its two terms are four times as large, relative to the
-            // difference. In a flat triangle, the two products are nearly equal. Their own
-            // roundings, three each, may then exceed those of their difference.
+            // The area is half the difference of `products`, times `share`, the fraction of the
+            // triangle that the segment covers. The first term of the bound covers the roundings of
+            // `share`, at most ten. Where `share` is computed as a difference, such as θ − sin
+            // θ·cos θ, |1 − w²| is at least `NEAR_PARABOLA`, and the difference is at least a
+            // quarter of θ. The subtraction therefore makes relative errors at most four times as
+            // large. The second term covers three roundings of each product. In a flat triangle,
+            // the two products are nearly equal, and their roundings may be large compared with the
+            // area.
             bound: UNIT * (48.0 * area + 2.0 * (products[0].abs() + products[1].abs()) * share),
         }
     }
@@ -125,7 +127,8 @@ fn triangle_share(w: f64) -> f64 {
 ///
 /// (θ − sin θ·cos θ)/sin³θ = Σ 2/(2k + 3)·C(2k, k)/4^k·z^k.
 ///
-/// The series follows from the integral of 2x²/√(1 − x²).
+/// It follows from the binomial series of 2x²/√(1 − x²), whose integral from 0 to sin θ is θ − sin
+/// θ·cos θ.
 fn series(z: f64) -> f64 {
     const TERMS: usize = 34;
     const COEFFICIENTS: [f64; TERMS] = {
@@ -297,8 +300,8 @@ struct Chords {
 /// Returns the roots between 0 and 1 of f0·(1 − t)² + f1·t·(1 − t) + f2·t². Each entry is `None` if
 /// there is no such root.
 fn roots(f0: f64, f1: f64, f2: f64) -> [Option<f64>; 2] {
-    // Without scaling, the products underflow if the squares of the board are extremely large,
-    // because f0, f1 and f2 are then tiny.
+    // If the squares of the board are extremely large, f0, f1 and f2 are tiny. Their products would
+    // underflow without scaling.
     let scale = 1.0 / f0.abs().max(f1.abs()).max(f2.abs());
     let [f0, f1, f2] = [f0 * scale, f1 * scale, f2 * scale];
     let discriminant = f1 * f1 - 4.0 * f0 * f2;

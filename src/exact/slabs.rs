@@ -23,9 +23,8 @@ use super::{
 };
 
 /// Maximum distance in y, in pixels, by which a curve may lie on the wrong side of its neighbour
-/// and still be treated as lying on the correct side. It is the maximum rounding error of the
-/// distance: the difference of two values of at most 1, each with an error of at most eight unit
-/// roundoffs.
+/// without the slab being cut. It is the maximum rounding error of the distance, which is the
+/// difference of two values of at most 1, each with an error of at most eight unit roundoffs.
 const ORDER_TOLERANCE: f64 = 16.0 * f64::UNIT;
 
 /// Maximum distance in y, in pixels, between neighbouring curves at which a slab (a vertical strip)
@@ -62,9 +61,10 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     for curve in curves {
         match curve {
             Boundary::Line(line) => {
-                // The line is at most √2 long. It is displaced by at most 2·`line.rad`, because the
-                // larger of its factors of x and y is at least 1/2, and 2·√2 < 3. `ROUNDING` covers
-                // the rounding errors of areas.
+                // The line is at most √2 long in the pixel. It is displaced by at most
+                // 2·`line.rad`, because the larger of its factors of x and y is at least 1/2. The
+                // doubtful area is at most the product, and 2·√2 < 3. `ROUNDING` covers the
+                // rounding errors of areas.
                 regions.add_doubtful_area(3.0 * line.rad);
                 match Track::of_line(line) {
                     Some(track) => lines.push(track),
@@ -91,9 +91,9 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     cuts.retain(|x| x.abs() <= 0.5);
     cuts.sort_unstable_by(f64::total_cmp);
     cuts.dedup();
-    // Area up to which two neighbouring curves of a slab may overlap without a cut. If there is one
-    // such pair in each of the `MAX_ADDED_SLABS` slabs, their areas add up to the pixel's
-    // tolerance.
+    // Maximum area by which two neighbouring curves of a slab may overlap without the slab being
+    // cut. If one pair of curves overlaps by this area in each of `MAX_ADDED_SLABS` slabs, the
+    // areas add up to the pixel's tolerance.
     let doubtful_limit = regions.budget.tolerance / MAX_ADDED_SLABS as f64;
     let mut all = Slabs {
         lines,
@@ -261,8 +261,8 @@ fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, r
             last = Ordering::Less;
         }
     }
-    // A cut closer to an end than half the minimum width would leave a slab that is too narrow. The
-    // slab is then cut in the middle.
+    // If the crossing is closer to an end than half the minimum width, a cut there would leave a
+    // slab that is too narrow. The slab is then cut in the middle.
     if inside > left + 0.5 * MIN_WIDTH && inside < right - 0.5 * MIN_WIDTH {
         inside
     } else {

@@ -1,8 +1,8 @@
 //! The lines that one edge of a polygon crosses, and the direct sum over these crossings.
 //!
 //! By Green's theorem ([`green`](super::green)), the integral of a board's sign over a polygon is a
-//! sum over the points where the polygon's edges cross lines of the board. What an edge contributes
-//! at each point is a function X, given as a truncated series.
+//! sum over the points where the polygon's edges cross lines of the board. The contribution of a
+//! point is the value of a function X there, which is given as a truncated series ([`EdgeSeries`]).
 //!
 //! In: the function X of an edge, and the point where the edge crosses its first line. Out: the
 //! alternating sum Σ (−1)^j·X over the crossings j, with a bound on truncation and rounding errors.
@@ -29,9 +29,9 @@ pub(super) const MAX_TERMS: usize = 20;
 /// crossings.
 const MAX_BLOCKS: f64 = 128.0;
 
-/// Minimum number of crossings in a block of the sum over an edge's crossings. With this many,
-/// choosing the block's number of terms is a small part of the work. Not critical: with 4 or 64,
-/// the measured running time changes by at most about 10 %.
+/// Minimum number of crossings in a block of the sum over an edge's crossings. In a block of 16
+/// crossings, choosing the number of terms is only a small part of the work. Not critical: with 4
+/// or 64, the measured running time changes by at most about 10 %.
 const MIN_BLOCK: f64 = 16.0;
 /// Maximum number of crossings in a block of the sum over an edge's crossings, which limits the
 /// rounding error of the block. Not critical: with 1024 or 16,384, the measured running time
@@ -44,8 +44,8 @@ const MAX_BLOCK: f64 = 4096.0;
 const LANES: usize = 8;
 /// Number of crossings of an edge after which the position along the edge is computed anew in
 /// double-double. In between, the position advances in `f64`, with an error that grows with the
-/// number of steps. A larger number would make the error larger; a smaller one would use the slow
-/// double-double more often.
+/// number of steps. A larger number would make the error larger; a smaller number would require the
+/// slow double-double more often.
 const CHUNK: usize = 64;
 
 /// A truncated series X, a function of the position along an edge of a polygon. Added up with
@@ -176,8 +176,8 @@ impl LineCrossings {
         let mut j = done;
         while left > 0 {
             let now = left.min(CHUNK);
-            // The compiler vectorises this loop only if it runs over whole vectors. So up to
-            // `LANES` − 1 values too many are computed, and then set to 0.
+            // The compiler vectorises this loop only if the number of values is a multiple of
+            // `LANES`. Up to `LANES` − 1 surplus values are therefore computed, and then set to 0.
             let mut values = [0.0; CHUNK];
             let filled = now.next_multiple_of(LANES);
             let t = self.reduced_at(&Double::from_f64(j)).hi;
@@ -231,10 +231,10 @@ impl LineCrossings {
     }
 }
 
-/// Computes the alternating sum Σ (−1)^j·X over `count` consecutive crossings of an edge. At the
-/// first of them, j = 0; before it, the edge has `done` other crossings. X is the edge's
-/// contribution at a crossing, given by `series`. Its first `terms` terms are added up, or some
-/// more if there is no variant of this function for this number of terms.
+/// Computes the alternating sum Σ (−1)^j·X over `count` consecutive crossings of an edge. j is 0 at
+/// the first of them; the edge has `done` other crossings before it. `series` gives X, the edge's
+/// contribution at a crossing, of which at least the first `terms` terms are added up. The number
+/// is rounded up to a number of terms for which the loop is compiled.
 #[multiversion(targets(
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",

@@ -62,9 +62,9 @@ use std::f64::consts::PI;
 const TRUNCATION: f64 = 1e-3;
 
 /// Maximum truncation error of the sum over the lines that one edge crosses, as a fraction of the
-/// pixel's tolerance. It holds for an edge that ends before the horizon, in a polygon that reaches
-/// the horizon. Edges that end on the horizon get the larger fraction [`ENDLESS_TAIL`], because
-/// they cross infinitely many lines.
+/// pixel's tolerance. It applies to edges that do not reach the horizon, in a polygon that does.
+/// Edges that end on the horizon get the larger fraction [`ENDLESS_TAIL`], because they cross
+/// infinitely many lines.
 ///
 /// A polygon has noticeable errors on at most two edges that end before the horizon and two that
 /// end on it. Together they are at most 2·(1/9 + 8/9), twice the tolerance. The area of a colour is
@@ -72,13 +72,13 @@ const TRUNCATION: f64 = 1e-3;
 /// tolerance.
 const FINITE_TAIL: f64 = 1.0 / 9.0;
 /// Maximum truncation error of the sum over the lines that one edge crosses, as a fraction of the
-/// pixel's tolerance. It holds for an edge that ends on the horizon. Other edges of the polygon get
-/// the rest, 1/9 ([`FINITE_TAIL`]).
+/// pixel's tolerance. It applies to edges that end on the horizon. Other edges of the same polygon
+/// get only 1/9 ([`FINITE_TAIL`]).
 const ENDLESS_TAIL: f64 = 8.0 / 9.0;
 /// Maximum truncation error of the sum over the lines that one edge crosses, as a fraction of the
 /// pixel's tolerance, if no edge of the polygon reaches the horizon. It is the whole tolerance,
-/// because only the two edges that recede from the eye have long sums; the sums over other edges
-/// hardly contribute.
+/// because only the two edges that recede from the eye have long sums with noticeable truncation
+/// errors.
 const ONLY_FINITE_TAIL: f64 = 1.0;
 /// Minimum share of the pixel's tolerance that a polygon gets for its truncated sums. The share is
 /// the polygon's area, in square pixels, if this is greater. With a smaller minimum, the sums over
@@ -102,7 +102,7 @@ pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
 
 /// Integrates the board's sign (1 on squares of one colour, −1 on the others) over a convex polygon
 /// in which the depth changes little from square to square. The polygon may reach the horizon.
-/// `visible` is the larger polygon of which this one is a part; the floor is seen in all of it.
+/// `visible` is a larger polygon that contains this one and shows only the floor.
 pub(super) fn sum(
     board: &Homography,
     polygon: &[DVec2],
@@ -112,8 +112,8 @@ pub(super) fn sum(
     let (area, _) = measure(polygon);
     let corner = |&at: &DVec2| board.corner(at, visible);
     let corners: Vec<Corner> = polygon.iter().map(corner).collect();
-    // The polygons of a pixel divide its tolerance in proportion to their areas, but each gets at
-    // least the fraction `MIN_SHARE`. The limits `FINITE_TAIL`, `ENDLESS_TAIL` and
+    // The pixel's tolerance is divided among its polygons in proportion to their areas, but each
+    // polygon gets at least the fraction `MIN_SHARE`. The limits `FINITE_TAIL`, `ENDLESS_TAIL` and
     // `ONLY_FINITE_TAIL` assume that a polygon has four edges. If it has more, each edge gets
     // proportionally less.
     let share = area.abs().max(MIN_SHARE) * (4.0 / corners.len() as f64).min(1.0);
@@ -331,7 +331,7 @@ impl Edge {
         } else {
             far.depth - near.depth
         };
-        // If no line is crossed, `lines` is 0. `stride` is then not used, and is set to 0, too.
+        // If the edge crosses no line, `lines` is 0 and `stride` is not used. It is then set to 0.
         let mut stride = lines;
         if !lines.is_zero() {
             stride = along.over(&across);
@@ -365,8 +365,8 @@ impl Edge {
         tolerance: f64,
         budget: &PixelBudget,
     ) -> BoundedSum {
-        // With the symbols of the module's documentation, the contribution is ρ·∫ s(c) dX from the
-        // near to the far end, where c is the coordinate that changes less along the edge.
+        // In the symbols of the module's documentation, the contribution is ρ·∫ s(c) dX from the
+        // near to the far end. Here, c is the floor coordinate that changes less along the edge.
         let series = self.series(board, terms);
         let square = self.c.floor();
         let start = square_wave(square);

@@ -24,11 +24,11 @@ pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
 /// much smaller one has no correct digit.
 const MIN_DETERMINANT: f64 = 1e-100;
 
-/// Displacement of squares by rounding errors, in pixels, up to which corners may be moved onto the
-/// horizon. [`Homography::corner`] moves a corner if its distance from the horizon may be only a
-/// rounding error. If squares may be displaced further, no corner is moved, because the move would
-/// increase the error bound too much. With this displacement, the move adds about a hundredth of
-/// the default tolerance to the bound.
+/// Maximum displacement of squares by rounding errors, in pixels, at which corners may be moved
+/// onto the horizon. [`Homography::corner`] moves a corner if its distance from the horizon may be
+/// only a rounding error. If squares may be displaced farther, no corner is moved, because the move
+/// would increase the error bound too much. With this displacement, the move adds about a hundredth
+/// of the default tolerance to the bound.
 const MAX_HORIZON_DISPLACEMENT: f64 = 1e-11;
 
 /// An integral of a checkerboard's sign (1 on squares of one colour, −1 on the others), and a bound
@@ -54,7 +54,7 @@ pub(in crate::exact) struct BoundedSum {
 ///
 /// m(a, b) = p·a + q·b + r,
 ///
-/// where (p, q, r) is the third row of M⁻¹. A piece da·db of the floor covers J = K/m³ square
+/// where (p, q, r) is the third row of M⁻¹. A unit of the floor's area covers J = K/m³ square
 /// pixels, where K = 1/|det M|.
 #[derive(Clone, Debug)]
 pub(in crate::exact) struct Homography {
@@ -101,8 +101,8 @@ pub(super) struct Corner {
     pub depth: f64,
 }
 
-/// The part of a convex polygon of the picture in which the floor is seen, and this part's side on
-/// the horizon, if it has one.
+/// The part of a convex polygon of the picture that shows the floor, and its edge on the horizon,
+/// if it has one.
 #[derive(Debug)]
 pub(super) struct VisiblePart {
     pub polygon: Vec<DVec2>,
@@ -300,9 +300,9 @@ impl Homography {
     pub(in crate::exact) fn displacement_error(&self, polygon: &[DVec2]) -> f64 {
         let (_, perimeter) = measure(polygon);
         // Errors e of the forms displace a point by v = M⁻¹·e, where M is the matrix of the three
-        // forms. The displacement changes the value of the form L only by the error of L. Points
-        // near the horizon therefore hardly move perpendicular to the horizon, even if they move
-        // far along it.
+        // forms. The value of the form L at the point changes only by the error of L. Points near
+        // the horizon, where L is 0, therefore hardly move perpendicular to the horizon, even if
+        // they move far along it.
         let levels = polygon.iter().map(|&p| form(&self.below, p));
         let [least, more] = self.across_horizon;
         let across = (least + more * levels.fold(0.0, f64::max)).min(self.displacement);

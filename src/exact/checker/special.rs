@@ -119,9 +119,9 @@ pub(in crate::exact) fn square_wave(t: f64) -> f64 {
     if half == half.floor() { 1.0 } else { -1.0 }
 }
 
-/// Returns the signed distance of `t` from the middle of its square, and the square wave there. On
-/// the border of two squares, either square may be used, because the periodic Euler polynomials A_k
-/// are continuous from k = 1 on. |`t`| must be below 2^51, the limit of [`ROUND`].
+/// Returns the signed distance of `t` from the middle of its square, and the sign of the square
+/// wave on it. On the border of two squares, either square may be used, because the periodic Euler
+/// polynomials A_k are continuous for k ≥ 1. |`t`| must be below 2^51, the limit of [`ROUND`].
 #[inline(always)]
 fn from_middle(t: f64) -> (f64, f64) {
     let middle = t - 0.5;
@@ -142,8 +142,8 @@ fn from_middle(t: f64) -> (f64, f64) {
 /// Calkin and Manna, "Euler–Boole summation revisited", 2009). From k = 1 on, A_k is continuous and
 /// |A_k| ≤ ½π^(1−k).
 ///
-/// `TERMS` is a constant so that the compiler can vectorise over many t. `ROWS` must be `TERMS` +
-/// 2.
+/// `TERMS` is a const parameter, so that the compiler can vectorise a loop over many t. `ROWS` must
+/// be `TERMS` + 2.
 #[inline(always)]
 pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS] {
     let (eta, sign) = from_middle(t);
@@ -295,9 +295,9 @@ fn expansions() -> Vec<Expansion> {
     //
     // y·F_s′ = (s − 1 − iy)·F_s − 1.
     //
-    // Errors satisfy this equation without the −1, so that they are proportional to y^(s−1),
-    // whereas F_s grows about like 1/y. They therefore decay on the way down. The coefficients c_k
-    // of the Taylor series about y satisfy the recurrence
+    // An error of F_s satisfies this equation without the −1, so it is proportional to y^(s−1),
+    // whereas F_s is about proportional to 1/y. Towards smaller y, errors therefore decay. The
+    // coefficients c_k of the Taylor series about y satisfy the recurrence
     //
     // (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1 − δ_k,
     //

@@ -13,8 +13,8 @@ use crate::math::{Double, Real};
 
 /// Maximum truncation error of a sum over an edge's crossings, as a fraction of the pixel's
 /// tolerance, if the depth less than doubles along the edge. A thousandth hardly adds to the
-/// pixel's error. If the fraction [`LATER_TERMS_SHARE`] of the edge's own tolerance is greater, the
-/// maximum is that fraction instead.
+/// pixel's error. The maximum is never less than the fraction [`LATER_TERMS_SHARE`] of the edge's
+/// own tolerance.
 const LEVEL_TRUNCATION: f64 = 1e-3;
 /// Minimum ratio of the depth in the middle of an edge to the change of the depth along the edge,
 /// at which the depth is treated as constant. This approximation adds at most 4/STEADY, about 1e-6,
@@ -47,8 +47,8 @@ pub(super) fn sum(
     };
 
     let step = all.alternating_step();
-    // e^(iφ) at two places: at the first crossing, and where the next crossing after the last one
-    // would be. φ is the phase of mode 1 there.
+    // e^(iφ) at the first crossing, and at the position of a crossing that would follow the last. φ
+    // is the phase of mode 1 there.
     let ends = [Double::from_f64(0.0), all.count].map(|j| cis(all.reduced_at(&j).hi * PI));
     let rotations = ends.map(square);
     let mut phases = ends;
@@ -170,8 +170,8 @@ mod tests {
     #[test]
     fn geometric_sums() {
         for theta in [0.0, 1e-9, -1e-3, 0.7, 3.0, -PI] {
-            // The tolerance allows for the errors of the direct sum: its angles have errors of up
-            // to 1000·3·2⁻⁵³.
+            // The tolerance covers the errors of the direct sum, whose angles have errors of up to
+            // 1000·3·2⁻⁵³.
             close(
                 geometric(theta, 1000.0, places(theta, 1000.0)),
                 one_by_one(theta, f64::INFINITY, 1000.0, 3),

@@ -32,7 +32,8 @@ impl ExactArc {
         }
     }
 
-    /// Evaluates the curve's polar form, as a point in homogeneous coordinates.
+    /// Evaluates the curve's polar form (blossom) at the parameters `s` and `t`, as a point in
+    /// homogeneous coordinates.
     fn blossom(&self, s: &N, t: &N) -> [N; 3] {
         let one = NUMBER.exact(1.0);
         let [u, v] = [s, t].map(|t| &one - t);
