@@ -77,9 +77,8 @@ mod tests {
                 let (r, slope) = rest_of_pole(sign * theta, rotation);
                 let errors = [(sign * r, &expected[0]), (slope, &expected[1])]
                     .map(|(x, expected)| (number.exact(x) - expected).to_f64().value().abs());
-                // Size of the first omitted terms of the two series, except for factors of 1/5 and
-                // 9. It is computed at the largest angle at which the series are used. The factor
-                // 1.5 covers later terms and roundings.
+                // The first omitted terms of the two series are θ⁹/47900160 and 9·θ⁸/47900160. They
+                // are largest at `NEAR_POLE`. The factor 1.5 covers later terms and roundings.
                 let omitted = 1.5 * libm::pow(NEAR_POLE, 8.0) / 47_900_160.0;
                 assert!(errors[0] <= NEAR_POLE * omitted, "{theta}: {errors:?}");
                 assert!(errors[1] <= 9.0 * omitted, "{theta}: {errors:?}");
