@@ -27,8 +27,8 @@ pub(super) const PRECISION: usize = 320;
 const GUARD: usize = 320;
 
 impl Big {
-    /// Number of bits of a [`Big`]. A greater integer is rounded to this many bits, so that it is
-    /// always even.
+    /// Number of bits of a [`Big`]. An integer with more bits is rounded to this number of bits, so
+    /// it is always even.
     pub const BITS: i32 = PRECISION as i32;
 
     /// Rounds `x` to the nearest big number.
@@ -117,7 +117,7 @@ fn wide(x: f64) -> Float {
 /// are exact. Any other number becomes 0.
 pub(super) fn exact(x: f64) -> Float {
     // The numbers of a scene and of sample points are finite. An infinite number or NaN would be a
-    // bug, which must not become a panic in a release build.
+    // bug, but it must not cause a panic in a release build.
     debug_assert!(x.is_finite());
     let x = if x.is_finite() { x } else { 0.0 };
     let float = Float::try_from(x).unwrap_or(Float::ZERO);

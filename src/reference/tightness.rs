@@ -3,8 +3,8 @@
 //!
 //! A bound adds up the rounding errors of a computation as if each had its greatest possible size
 //! and all had the same sign. With n independent roundings, the actual error is typically smaller
-//! by a factor of √n. So the greatest error of many computations is multiplied by √n. The product
-//! must be at least a hundredth of the bound.
+//! by a factor of √n. For this reason, the greatest error of many computations is multiplied by √n.
+//! The product must be at least a hundredth of the bound.
 
 use std::fmt::Debug;
 
