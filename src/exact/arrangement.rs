@@ -18,10 +18,10 @@ use super::{
 };
 
 /// Minimum area of a cell, a polygon between lines, in square pixels. A smaller cell is not cut any
-/// further. Rounding can create slivers that do not exist in exact arithmetic, and each line could
-/// double their number. The whole area of such a cell is added to the error bound, because rounding
-/// may put the point at which its colour is determined outside the cell. A square of this area has
-/// sides of 2⁻²³ pixels, about 10⁹ unit roundoffs.
+/// further. Rounding can create tiny cells that do not exist in exact arithmetic, and each further
+/// line could double their number. The whole area of such a cell is added to the error bound. The
+/// point at which its colour is determined may lie outside the cell because of rounding. A square
+/// of this area has sides of 2⁻²³ pixels, about 10⁹ unit roundoffs.
 const MIN_AREA: f64 = 1.0 / (1u64 << 46) as f64;
 
 /// Factor k of the area limit k·n·e of a cell, a polygon between lines. If the area, in square
@@ -51,8 +51,8 @@ pub fn shares(lines: &[BoundaryLine], mut regions: Regions) -> Shares {
         worst = worst.max(rad);
         // `rad` is the maximum error of a·x + b·y + c, the form of the line, at a vertex. The
         // larger of |a| and |b| is at least 1/2, so the true line is within 2·`rad` of the computed
-        // one. The line is at most √2 long in the pixel. The area between the true and the computed
-        // line is therefore at most 2·√2·`rad`, which is less than 3·`rad`.
+        // line. The line is at most √2 long in the pixel. The area between the true and the
+        // computed line is therefore at most 2·√2·`rad`, which is less than 3·`rad`.
         regions.add_doubtful_area(3.0 * rad);
         for polygon in mem::take(&mut polygons) {
             if regions.budget.is_spent() {

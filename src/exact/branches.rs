@@ -142,9 +142,9 @@ impl ConicGraph {
         let at = Double::from_f64(x);
         let minus = b.times(&at).plus(e).negated().hi;
         // In exact arithmetic, (−b ± √Δ)/C and g/(−b ∓ √Δ) give the same y (`ConicGraph`). The
-        // formula in which nothing cancels is used. If the computed Δ is 0, nothing cancels in
-        // either formula. The exact Δ may then be slightly negative, because x is rounded at the
-        // end of a branch. Only the first formula is then accurate: it gives −b/C.
+        // formula that does not subtract two nearly equal numbers is used. At the end of a branch,
+        // Δ is 0 and x is rounded, so the exact Δ at the rounded x may be slightly negative. Only
+        // the first formula is accurate in this case: it gives −b/C.
         if minus * side >= 0.0 || root == 0.0 {
             (minus + root) / c.hi
         } else {
@@ -187,8 +187,8 @@ impl ConicGraph {
 impl<'a> ConicSpan<'a> {
     /// Returns the conic's branch with the sign `side` (1 or −1) as a function y(x) ([`Track`]),
     /// and an arc or chord that approximates it ([`Section`]). Returns `None` if the branch is not
-    /// finite or lies outside the pixel. The section is `None` if the branch turns too much to be
-    /// represented by one arc; the caller then halves the range.
+    /// finite or lies outside the pixel. The section is `None` if the branch turns too much for a
+    /// single arc; the caller then halves the range.
     pub fn branch(&self, side: f64) -> Option<(Track<'a>, Option<Section>)> {
         let Self { graph, x, roots } = self;
         let y = [0, 1, 2].map(|i| graph.y(x[i], roots[i], side));
@@ -216,9 +216,10 @@ impl<'a> ConicSpan<'a> {
                     ..straight
                 })
             }
-            // A branch may be so flat that rounding errors prevent the computation of an arc. It is
-            // treated as straight if the distance between its middle and the chord is at most the
-            // rounding error `flat`: six roundings of each y, and two of the mean of two y.
+            // If a branch is very flat, rounding errors may prevent the computation of an arc. The
+            // branch is treated as straight if the distance of its middle from the chord is at most
+            // the rounding error `flat`. This error consists of six roundings of each y and two of
+            // the mean of two y.
             None => {
                 let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
                 (sagitta.abs() <= flat).then_some(Section {
@@ -256,9 +257,9 @@ impl<'a> ConicSpan<'a> {
             end,
             weight: w2.sqrt(),
         };
-        // Minimum weight of an arc, and the reciprocal of the maximum. For a circle, the weight is
-        // the cosine of half the arc's turn, so a weight below 1/2 means a turn of more than 120°.
-        // An arc beyond these limits is rejected, and the caller halves it.
+        // Minimum weight of an arc. The maximum is its reciprocal. For a circle, the weight is the
+        // cosine of half the angle by which the arc turns, so a weight below 1/2 means a turn of
+        // more than 120°. An arc beyond these limits is rejected, and the caller halves it.
         const MIN_WEIGHT: f64 = 0.5;
         let turns_little = arc.weight > MIN_WEIGHT && arc.weight < 1.0 / MIN_WEIGHT;
         (control.x >= 0.0 && control.x <= end.x - start.x && turns_little).then_some((arc, off))
@@ -288,19 +289,22 @@ impl Tangents {
     /// and bounds the error of the area between the arc and its chord.
     fn new<T: Real<Radius = f64>>(factors: &[T; 6], ends: &[ArcEnd<T>; 2]) -> Self {
         // The area between arc and chord is part of the triangle of the chord and the two tangents.
-        // It has an error from the tangents' directions and one from the arc's weight.
+        // Its error has two causes: the errors of the tangents' directions, and the error of the
+        // arc's weight.
         //
         // Directions: let κ be 1 plus the sum of the absolute values of the terms of the conic's
         // gradient, divided by the gradient's length. The gradient has a relative error of κ
-        // roundings, so a tangent's direction has an error of κ roundings, in radians. If a side of
-        // length l turns by a small angle φ, the triangle's area changes by at most l²·φ/2. The
-        // area between arc and chord changes no more.
+        // roundings, so a tangent's direction has an error of κ roundings, in radians. If a tangent
+        // of length l turns by a small angle φ, the triangle's area changes by at most l²·φ/2. The
+        // area between arc and chord changes at most as much.
         //
         // Weight: its square is the quotient of two values of the conic's quadratic part Q. Each
         // value of Q has two errors: the roundings of its terms, and the error of its argument, a
-        // vector. The area between arc and chord grows no faster than the weight. An error of √Δ
-        // (`ConicGraph`) is not included: it moves points and tangents together, like an error of
-        // the conic itself.
+        // vector. The relative error of the area between arc and chord is at most that of the
+        // weight.
+        //
+        // An error of √Δ (`ConicGraph`) is not included. It moves points and tangents together,
+        // like an error of the conic itself.
         let [a, b, c, d, ..] = factors;
         let product = |[x, y]: &[T; 2], [z, w]: &[T; 2]| x.times(z).plus(&y.times(w));
         let length = |[x, y]: &[T; 2]| libm::hypot(x.to_f64(), y.to_f64());

@@ -28,7 +28,7 @@ const MAX_LINES: f64 = 12.0;
 /// the area of the whole arc's segment. A larger quotient shows that numbers are too large or too
 /// small to represent the arc. The arc is then not halved, and its segment is added to the error
 /// bound. The exact quotient is 1/4 for a parabola and less for a hyperbola. For an ellipse, it is
-/// at most 0.37, if the arc is half of the ellipse. The constant is about 2 · 0.37.
+/// at most 0.37; this maximum is reached by half of an ellipse. The constant is about 2 · 0.37.
 const MAX_HALVES_SHARE: f64 = 0.75;
 
 /// An arc of a conic: the rational quadratic Bézier curve with weights 1, w and 1.
@@ -142,7 +142,7 @@ fn series(z: f64) -> f64 {
         }
         all
     };
-    // Because |z| < 2^−`bits`, the terms after the first `terms` add up to less than a rounding.
+    // Because |z| < 2^−`bits`, the omitted terms add up to less than a unit roundoff.
     let bits = (-1 - libm::ilogb(z)).max(1);
     let terms = (f64::MANTISSA_DIGITS as usize / bits as usize + 1).min(TERMS);
     let terms = COEFFICIENTS[..terms].iter().rev();
@@ -159,10 +159,10 @@ impl Homography {
         // lies in one square. The chords of the pieces enclose the rest of the region, a convex
         // polygon.
         //
-        // A piece whose segment is smaller than `neglected` is replaced by its chord. If an arc
-        // with a segment of area A is cut into n pieces, each piece has a segment of A/n³, and all
-        // pieces together have A/n². If n = √(A/t), this total is the tolerance t, and a piece's
-        // segment is t^(3/2)/√A, the value of `neglected`.
+        // A piece whose segment is smaller than `neglected` is replaced by its chord. Let A be the
+        // area of the arc's segment and t the tolerance. If the arc is cut into n pieces, a piece's
+        // segment has about the area A/n³, and all of them together have A/n². For n = √(A/t), this
+        // total is t, and a piece's segment has the area t^(3/2)/√A, the value of `neglected`.
         if let Some(sign) = self.square_of(arc) {
             return over_one_square(segment, sign);
         }
@@ -260,10 +260,10 @@ impl Homography {
         Some(sign)
     }
 
-    /// Returns the numbers of the first and last line of one of the board's families of lines that
-    /// may cross an arc: the lines a = i if `family` is 0, and b = i if it is 1. The first exceeds
-    /// the last if no line crosses the arc. Returns `None` if the arc's triangle may reach the
-    /// horizon.
+    /// Returns the numbers of the first and the last line of one of the board's two families that
+    /// may cross an arc. If `family` is 0, the lines are a = i; if it is 1, they are b = i. If no
+    /// line crosses the arc, the first number exceeds the last. Returns `None` if the arc's
+    /// triangle may reach the horizon.
     fn lines(&self, arc: &Arc, family: usize) -> Option<(f64, f64)> {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for p in [arc.start, arc.control, arc.end] {

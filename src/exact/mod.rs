@@ -72,10 +72,10 @@ use self::{
 /// colour. It is a little below 1e-9, to leave room for the rounding of sums.
 const DEFAULT_TOLERANCE: f64 = 9e-10;
 /// Maximum number of curves that pass through a whole pixel. With more curves, the pixel is
-/// quartered before anything is computed. n curves cross at about n² points, where all curves have
-/// to be examined; a quarter has only about half of the curves. Measured: with 6 instead of 12, a
-/// dozen objects take 10 % longer. A heap of 300 objects takes twice as long with 24 as with 6, and
-/// seven times as long with 96 as with 24.
+/// quartered before anything is computed. n curves cross at about n² points, and the work at each
+/// of them is proportional to n. In a quarter, there are only about half as many curves. Measured:
+/// with 6 instead of 12, a dozen objects take 10 % longer. A heap of 300 objects takes twice as
+/// long with 24 as with 6, and seven times as long with 96 as with 24.
 const MAX_CURVES: usize = 12;
 /// Number by which the maximum number of curves in a square part of a pixel grows with each
 /// quartering. Curves that still pass through the same small part are unlikely to be separated in
@@ -83,8 +83,8 @@ const MAX_CURVES: usize = 12;
 /// thirds of the time; with 16, it takes four times as long.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// Maximum number of times per pixel that an already computed part of the pixel is quartered to
-/// reduce its error bound. Near a point that a few curves share, each quartering reduces the bound
-/// to a quarter; 16 of them reduce it by a factor of 2^32.
+/// reduce its error bound. Near a point where several curves meet, each quartering reduces the
+/// bound to a quarter; 16 quarterings reduce it by a factor of 2^32.
 const MAX_QUARTERINGS: usize = 16;
 /// Maximum memory of a pixel's queued parts, in bytes. Temporary memory for computing a part is not
 /// included. Above the maximum, no part is quartered any more, and the areas of parts that are not

@@ -31,8 +31,8 @@ const REGION_WORK: f64 = 4.0;
 /// long.
 const RAY_WORK: f64 = 0.5;
 /// Work charged to the pixel's budget per candidate object that a region's ray may hit, in units of
-/// about 50 ns, if double-double arithmetic does not decide what the ray hits. The highest
-/// precision ([`Big`]) then decides, and each object takes hundreds of times as long.
+/// about 50 ns. It is charged only if the highest precision ([`Big`]) has to decide what the ray
+/// hits. Each object then takes hundreds of times as long.
 const BIG_RAY_WORK: f64 = 200.0;
 
 /// Fractions of the area of a pixel or sub-pixel that show each colour.
@@ -128,8 +128,8 @@ impl<'a> Regions<'a> {
         };
         let sum = self.boards[at].1.sum(region, self.budget);
         let half = 0.5 * sum.value;
-        // A share lies between 0 and the region's area, so its error is at most the larger of the
-        // two colours' shares.
+        // The true share of a colour lies between 0 and the region's area. The error of a computed
+        // share is therefore at most the larger of the two computed shares.
         let bound = (0.5 * sum.bound).min(0.5 * region.area + half.abs());
         self.shares.add(first, 0.5 * region.area + half);
         self.shares.add(second, 0.5 * region.area - half);
@@ -192,8 +192,8 @@ impl<'a> Regions<'a> {
     }
 
     /// Returns shares with the bound 1, for a sub-pixel that is not computed. The whole area is
-    /// given to the object in the middle of the sub-pixel. If the object has two colours, each gets
-    /// half of the area.
+    /// given to the object that is seen in the middle of the sub-pixel. If this object has two
+    /// colours, each gets half of the area.
     pub fn unknown(&self) -> Shares {
         let (object, _) = self.object_at(DVec2::ZERO);
         let background = [self.world.background(); 2];
@@ -240,9 +240,9 @@ impl LocalBoard {
         }
         BoundedSum {
             value: if self.odd { -sum.value } else { sum.value },
-            // `sum.bound` assumes that each factor of the board's forms has an error of one
-            // rounding. `relative_error` may be many times as large, so the bound is multiplied by
-            // one plus the ratio of the two.
+            // `sum.bound` assumes that each factor of the board's forms has a relative error of
+            // `UNIT`. The actual error, `relative_error`, may be many times as large, so the bound
+            // is multiplied by 1 plus the ratio of the two errors.
             bound: sum.bound * (1.0 + self.relative_error / f64::UNIT),
         }
     }

@@ -4,10 +4,10 @@
 //! curves in each slab, added to [`Regions`].
 //!
 //! Within a slab, each curve lies between its chord and its tangents. If two neighbouring curves
-//! may cross according to these bounds, the slab is cut. It is cut at the crossing if the curves
-//! have a different order at one of the slab's ends, otherwise in the middle. Not every crossing
-//! has to be found: if a slab is too narrow to cut, the area between its unseparated curves is
-//! added to the error bound.
+//! may cross according to these bounds, the slab is cut. If the order of the curves at one end of
+//! the slab differs from that in the middle, the cut is at their crossing. Otherwise, it is in the
+//! middle of the slab. Not every crossing has to be found: if a slab is too narrow to cut, the area
+//! between its unseparated curves is added to the error bound.
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
@@ -27,10 +27,10 @@ use super::{
 /// difference of two values of at most 1, each with an error of at most eight unit roundoffs.
 const ORDER_TOLERANCE: f64 = 16.0 * f64::UNIT;
 
-/// Maximum distance in y, in pixels, between neighbouring curves at which a slab (a vertical strip)
-/// is not cut although the curves may cross in it. The area between the curves is added to the
-/// error bound instead. The value is a thousand unit roundoffs, so that the area is at most about
-/// 10⁻¹³ square pixels.
+/// Maximum distance in y, in pixels, between neighbouring curves that may cross in a slab (a
+/// vertical strip) without the slab being cut. The area between the curves is added to the error
+/// bound instead. The value is a thousand unit roundoffs, so the area is at most about 10⁻¹³ square
+/// pixels.
 const MIN_DISTANCE: f64 = 1.0 / (1u64 << 43) as f64;
 
 /// Minimum width of a slab (a vertical strip) that is cut, in pixels. In a narrower slab, the area
@@ -43,14 +43,14 @@ const MIN_WIDTH: f64 = 1.0 / (1u64 << 48) as f64;
 /// by at most 2 % and the running time by at most 10 %.
 const MAX_ADDED_SLABS: usize = 4096;
 
-/// Maximum number of steps of the false position method that searches where two curves cross. After
-/// the last step, its estimate is used. Bisection would need 53 steps to narrow an interval from a
+/// Maximum number of steps of the false position method that searches where two curves cross. The
+/// estimate of the last step is used. Bisection would need 53 steps to narrow an interval from a
 /// pixel's side to the unit roundoff; the value is a little more.
 const MAX_STEPS: usize = 60;
 
-/// Maximum rounding error of the area of a region in a slab, divided by the slab's width. Two
-/// values of y of at most 1/2, each with a relative error of eight unit roundoffs, contribute eight
-/// unit roundoffs. Products and sums contribute at most another eight.
+/// Maximum rounding error of the area of a region in a slab, divided by the slab's width. The two
+/// values of y are at most 1/2, and each has a relative error of eight unit roundoffs; together
+/// they contribute eight unit roundoffs. Products and sums contribute at most another eight.
 const ROUNDING: f64 = 16.0 * f64::UNIT;
 
 /// Returns the fraction of a sub-pixel's area that shows each colour. `curves` cut the sub-pixel

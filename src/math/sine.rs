@@ -17,7 +17,7 @@ const MAX_RADIANS: f64 = (1u64 << 20) as f64;
 
 /// Number of terms of the series of the sine, and of the series of the cosine. The argument r is at
 /// most 0.8, a little more than π/4. With 15 terms, the first omitted term of the cosine is r³⁰/30!
-/// < 2^−117, and that of the sine, divided by r, is r³⁰/31! < 2^−122.
+/// < 2^−117. The first omitted term of the sine, divided by r, is r³⁰/31! < 2^−122.
 const TERMS: usize = 15;
 /// Maximum truncation error of a series: 2^−116. For the cosine, it is the absolute error. For the
 /// sine, it is the error divided by the series' argument. The terms alternate in sign and decrease,

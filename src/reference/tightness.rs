@@ -9,8 +9,8 @@
 use std::fmt::Debug;
 
 /// Maximum ratio of an error bound to the greatest error of many computations, after the error is
-/// multiplied by √n for n roundings. Typical errors are smaller than the greatest possible one, so
-/// the ratio cannot be close to 1.
+/// multiplied by √n for n roundings. Typical errors are smaller than the greatest possible error,
+/// so the ratio cannot be close to 1.
 const MOST: f64 = 100.0;
 
 /// Minimum number of errors on which a check of an error bound is based. With too few errors, all

@@ -12,8 +12,8 @@ use std::ops::Range;
 use super::{lattice, rng::Key};
 
 /// Maximum number of points whose radical inverses (mirrored digits) are stored. For pixels with
-/// more points, they are computed point by point, which takes longer. The stored numbers take 1
-/// MiB; a larger maximum would need more memory.
+/// more points, the inverses are computed point by point, which takes longer. The stored numbers
+/// take 1 MiB; a larger maximum would need more memory.
 const MAX_STORED: u64 = 1 << 16;
 
 /// The Halton sequence, with stored radical inverses (mirrored digits) in base 2 and in base 3.

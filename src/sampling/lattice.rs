@@ -1,5 +1,5 @@
-//! The possible values of a random offset from a pixel's centre, and strata, which are equal
-//! intervals of these values.
+//! The possible values of a random offset from a pixel's centre, and their division into strata,
+//! which are equal intervals.
 //!
 //! Random offsets are the 2^53 odd multiples of 2^−54 between −1/2 and 1/2. Each of them is an
 //! `f64`, and none lies on a pixel's edge or on its centre line. They are symmetric about 0, so
@@ -41,9 +41,9 @@ pub fn offset_of_bits(bits: u64) -> f64 {
     offset(bits >> 11)
 }
 
-/// The 2^53 possible offsets along a pixel's width or height, divided into n strata whose numbers
-/// of offsets differ by at most 1; 1 ≤ n ≤ 2^53. An offset is represented by its place, i.e. its
-/// index among all offsets.
+/// The 2^53 possible offsets along a pixel's width or height, divided into n strata (intervals), 1
+/// ≤ n ≤ 2^53. The numbers of offsets in two strata differ by at most 1. An offset is represented
+/// by its place, i.e. its index among all offsets.
 #[derive(Debug)]
 pub struct Strata {
     n: u64,

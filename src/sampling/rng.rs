@@ -2,9 +2,9 @@
 //!
 //! A [`Key`] stands for one use of random numbers (a seed, a method, a pixel, an axis), and
 //! `key.bits(i)` is the i-th 64-bit number for this use. The generator is SplitMix64 (Steele, Lea
-//! and Flood 2014, "Fast splittable pseudorandom number generators") with its state computed
-//! instead of stored. [`CounterRng`] returns the numbers of a key in turn, as a generator of the
-//! crate `rand`.
+//! and Flood 2014, "Fast splittable pseudorandom number generators"), but its state is computed
+//! from i instead of stored. [`CounterRng`] returns the numbers of a key one after the other, as a
+//! generator of the crate `rand`.
 
 use std::{convert::Infallible, iter, ops::Range};
 

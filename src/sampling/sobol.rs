@@ -7,14 +7,15 @@
 //! lies in every aligned rectangle of width 2^−a and height 2^(a−m), for each a from 0 to m. The
 //! same holds for every further block of 2^m points.
 //!
-//! Owen's scrambling flips some bits of each coordinate. A random bit decides whether a bit is
-//! flipped; there is one random bit for each combination of all higher bits. These combinations are
-//! the nodes of a binary tree. In a pixel with n points, no two points agree in the first m = ⌈log₂
-//! n⌉ bits of a coordinate. Below these m levels, every subtree therefore contains at most one
-//! point, and the point's further bits are simply independent random bits. The result is the true
-//! scrambling, with m decisions per coordinate instead of 53. One 64-bit hash decides six levels of
-//! the tree. The scrambling of Laine and Karras by multiplications was not tried: it is known to
-//! have weak bits, and it would save no time for the numbers of points that pictures use.
+//! Owen's scrambling flips some bits of each coordinate. Whether a bit is flipped depends on a
+//! random bit, and there is a separate random bit for each combination of all higher bits. These
+//! combinations are the nodes of a binary tree. In a pixel with n points, no two points agree in
+//! the first m = ⌈log₂ n⌉ bits of a coordinate. Below these m levels, every subtree therefore
+//! contains at most one point, and the point's further bits are simply independent random bits. The
+//! result is the true scrambling, with m decisions per coordinate instead of 53. One 64-bit hash
+//! decides six levels of the tree. The scrambling of Laine and Karras by multiplications was not
+//! tried: it is known to have weak bits, and it would save no time for the numbers of points that
+//! pictures use.
 
 use std::ops::Range;
 
@@ -96,8 +97,8 @@ fn second(i: u64) -> u64 {
     pascal(i).reverse_bits()
 }
 
-/// Multiplies the bits of a number by Pascal's triangle modulo 2: bit j of the result is the sum,
-/// over all k, of the binomial coefficient "k choose j" times bit k, modulo 2. The coefficient is
+/// Multiplies the bits of a number by Pascal's triangle modulo 2. Bit j of the result is the sum
+/// over all k of bit k times the binomial coefficient "k choose j", modulo 2. The coefficient is
 /// odd if all bits of j are also set in k. The positions j and k, from 0 to 63, have six bits, so
 /// six steps are enough: one for each of these bits.
 fn pascal(mut bits: u64) -> u64 {

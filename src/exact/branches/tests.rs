@@ -56,8 +56,8 @@ impl ExactBranch {
 
     /// Returns how far y(x) may move if the conic's equation has an error of eight roundings in
     /// double-double. The distance is large only if Δ ([`ConicGraph`]) is nearly 0 at `x`. The
-    /// error bound of a section does not cover this movement, because the error bound of the conic
-    /// does.
+    /// error bound of a section does not cover this movement; the error bound of the conic covers
+    /// it.
     fn doubt(&self, x: f64) -> f64 {
         let c = self.factors[2].to_f64().value().abs();
         let root = self.root(&NUMBER.exact(x)).to_f64().value();

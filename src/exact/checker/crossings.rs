@@ -22,11 +22,10 @@ use multiversion::multiversion;
 /// the omitted terms is then proportional to 22!/2·(18π)⁻²⁰, about 5e-15. Fewer terms would make
 /// this factor larger.
 pub(super) const MAX_TERMS: usize = 20;
-/// Upper limit on the number of blocks into which the sum over an edge's crossings is divided. The
-/// truncation error of each block is limited to the tolerance divided by this number, so that the
-/// error of all blocks together is within the tolerance. The longest sum has 300,000 crossings:
-/// about 15 blocks that grow up to `MAX_BLOCK` crossings, and about 74 blocks of `MAX_BLOCK`
-/// crossings.
+/// Upper limit on the number of blocks into which the sum over an edge's crossings is divided. Each
+/// block may have a truncation error of the tolerance divided by this number. The error of all
+/// blocks together is then within the tolerance. The longest sum has 300,000 crossings: about 15
+/// blocks that grow up to `MAX_BLOCK` crossings, and about 74 blocks of `MAX_BLOCK` crossings.
 const MAX_BLOCKS: f64 = 128.0;
 
 /// Minimum number of crossings in a block of the sum over an edge's crossings. In a block of 16
@@ -40,7 +39,7 @@ const MAX_BLOCK: f64 = 4096.0;
 
 /// Number of running sums in which the alternating terms of an edge's crossings are added: crossing
 /// j goes to sum j mod `LANES`. The compiler vectorises the loop, and the widest vectors hold eight
-/// `f64`. The number is even, so that the signs (−1)^j of all terms in one running sum are equal.
+/// `f64`. Because the number is even, all terms in one running sum have the same sign (−1)^j.
 const LANES: usize = 8;
 /// Number of crossings of an edge after which the position along the edge is computed anew in
 /// double-double. In between, the position advances in `f64`, with an error that grows with the
@@ -151,10 +150,10 @@ impl LineCrossings {
             // The rounding errors, in unit roundoffs, consist of three parts. First, the coordinate
             // t has an error of at most 2, plus 3 for each crossing since t was last computed in
             // double-double. The mean of this error over the block is at most 4·`reach`. The slope
-            // of X is at most π times the bound `series.size` of X, so an error of t causes at most
-            // π times as large an error of X, relative to this bound. Second, a term of X is
-            // computed with 14 roundings, derived in `green`. Third, each number added to one of
-            // the `LANES` running sums adds one rounding.
+            // of X is at most π·`series.size`, so an error of t causes an error of X of at most
+            // π·`series.size` times the error of t. Second, X is computed with 14 roundings
+            // (derived in `green`). Third, each number that is added to one of the `LANES` running
+            // sums adds one rounding.
             let reach = 2.0 + 0.5 * count.min(CHUNK as f64);
             let added = count / LANES as f64 + 4.0;
             let rounding = UNIT * series.size(1, depth) * (added + 16.0 + 4.0 * PI * reach);

@@ -81,8 +81,8 @@ const ENDLESS_TAIL: f64 = 8.0 / 9.0;
 /// errors.
 const ONLY_FINITE_TAIL: f64 = 1.0;
 /// Minimum share of the pixel's tolerance that a polygon gets for its truncated sums. The share is
-/// the polygon's area, in square pixels, if this is greater. With a smaller minimum, the sums over
-/// tiny polygons would become long. With a larger one, the errors of many tiny polygons could
+/// the polygon's area, in square pixels, if this is greater. With a smaller minimum, the sums for
+/// tiny polygons would become long. With a larger minimum, the errors of many tiny polygons could
 /// exceed the tolerance.
 const MIN_SHARE: f64 = 1.0 / 64.0;
 
@@ -170,10 +170,9 @@ fn terms(
     area: f64,
     limit: f64,
 ) -> (usize, f64) {
-    // The symbols are those of the module's documentation; n is the number of terms. The truncation
-    // error of P follows from |A_k| ≤ ½π^(1−k). Let p be the larger of the slopes |∂m/∂a| and
-    // |∂m/∂b|, and m the smallest depth. The integral of the error is at most the polygon's area in
-    // the picture times
+    // The symbols are those of the module's documentation; n is the number of terms. Let p be the
+    // larger of the slopes |∂m/∂a| and |∂m/∂b|, and m the smallest depth. Because |A_k| ≤ ½π^(1−k),
+    // the truncation error of P has an integral of at most the polygon's area in the picture times
     //
     // ½π^(1−n)·(n+2)!/2·(p/m)^n.
     //
@@ -181,9 +180,9 @@ fn terms(
     //
     // n·π^(1−n)·(n+2)!/2·(g/m)^n·∫ J |dt|.
     //
-    // Here t is the one of the coordinates a and b that changes more along the edge. g is the
-    // larger of |∂m/∂t| on the floor and |dm/dt| along the edge. The integral ∫ J |dt| is at most
-    // J·min(|Δt|, m/2γ), with J at the near end.
+    // Here t is the coordinate (a or b) that changes more along the edge, and g is the larger of
+    // |∂m/∂t| on the floor and |dm/dt| along the edge. The integral ∫ J |dt| is at most J·min(|Δt|,
+    // m/2γ), with J at the near end.
     let slope = board.slope[0].abs().max(board.slope[1].abs());
     let (mut ratio, mut weight) = (slope / nearest, 0.0);
     for edge in edges.iter().flatten() {
@@ -253,9 +252,9 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
 }
 
 /// An edge of a polygon, directed from its near end to its far end. A point of the edge shows a
-/// point (a, b) of the floor, in squares. t is the one of these two coordinates that changes more
-/// along the edge, c is the other one, and m is the depth. The sum over the edge's crossings runs
-/// over the lines of the board on which c is constant.
+/// point (a, b) of the floor, in squares, at the depth m. The coordinate (a or b) that changes more
+/// along the edge is called t, and the other one is called c. The sum over the edge's crossings
+/// runs over the lines of the board on which c is constant.
 struct Edge {
     /// +1 or −1: the sign with which the edge's contribution is added to the integral over the
     /// polygon. It depends on two conditions: whether the polygon's boundary runs from the edge's
@@ -272,9 +271,8 @@ struct Edge {
     /// Values at the far end: the coordinate of the floor that changes less along the edge, the one
     /// that changes more, and the depth. `None` if the far end is on the horizon.
     end: Option<(f64, f64, f64)>,
-    /// Number of the board's lines that the edge crosses, counting only those on which the
-    /// coordinate that changes less along the edge is constant. Infinite if the edge ends on the
-    /// horizon.
+    /// Number of the board's lines of constant c that the edge crosses, where c is the coordinate
+    /// of the floor that changes less along the edge. Infinite if the edge ends on the horizon.
     count: Double,
     /// Change of t from the near to the far end, where t is the coordinate of the floor that
     /// changes more along the edge. Infinite if the far end is on the horizon.
@@ -402,7 +400,7 @@ impl Edge {
         // Term k of the series X at an end of the edge is computed with 3k + 4 roundings and is
         // less than 2^−k times term 0. The roundings add up to at most 14 unit roundoffs, relative
         // to term 0. The constant 32 covers both ends. Every term is also proportional to the
-        // density factor K, which has an error of its own.
+        // density factor K, whose relative error is `density_error`.
         let (ends, all) = (32.0 * UNIT * ends, ends + sum.value.abs());
         sum.value *= self.rho;
         sum.bound = self.rho.abs() * (sum.bound + ends + 2.0 * board.density_error * all);

@@ -1,5 +1,5 @@
-//! Integrates a checkerboard's sign, 1 on squares of one colour and −1 on the others, over near
-//! squares: each square is cut out of the picture.
+//! Integrates a checkerboard's sign, 1 on squares of one colour and −1 on the others, over a
+//! polygon of few squares or of squares near the eye. Each square is cut out of the polygon.
 //!
 //! In: a convex polygon of the picture that does not reach the horizon. Out: the sum of the areas
 //! of the squares in it, each multiplied by its sign, in square pixels, with an error bound. The
@@ -199,9 +199,9 @@ impl CompensatedSum {
     fn sum(&self) -> BoundedSum {
         BoundedSum {
             value: self.value + self.rest,
-            // Adding `rest`, the sum of all earlier rounding errors, has an error of at most one
-            // unit roundoff, because the absolute value of the result is at most 1. The errors in
-            // `rest` itself are far below the second unit roundoff.
+            // `rest` is the sum of all earlier rounding errors. Adding it causes an error of at
+            // most one unit roundoff, because the absolute value of the result is at most 1. The
+            // error of `rest` itself is far below a second unit roundoff.
             bound: self.bound + 2.0 * UNIT,
         }
     }

@@ -40,9 +40,9 @@ use super::{
 };
 use crate::tracer::{CheckerForms, CheckerPixel, LocalForm};
 
-/// Maximum number of lines that cut a pixel into strips. A pixel in which both of the board's
-/// families of lines have more lines is computed alone. With 6 lines, the buffer of 34 sides of 320
-/// bytes each stays in the first-level cache.
+/// Maximum number of lines that cut a pixel into strips. A pixel that is crossed by more lines of
+/// both families of the board is computed alone. With 6 lines, the buffer contains 34 sides of 320
+/// bytes each, which fit into the first-level cache.
 pub(super) const MAX_STRIP_LINES: usize = 6;
 
 /// Number of pixels that are computed at once. The widest vector registers hold eight `f64`.
@@ -130,9 +130,9 @@ impl LaneSums {
 
 impl BoardLanes {
     /// Sets the board of the pixel with the index `place`, from 0 to 7. A board has two families of
-    /// parallel lines, between columns (0) and between rows (1). `families` lists the two, the one
-    /// with fewer lines in the pixel first. `first` holds the numbers of the pixel's first column
-    /// and first row of squares.
+    /// parallel lines, those between columns (0) and those between rows (1). `families` lists the
+    /// family with fewer lines in the pixel first. `first` holds the numbers of the pixel's first
+    /// column and first row of squares.
     pub fn set(
         &mut self,
         place: usize,
@@ -224,8 +224,8 @@ impl BoardLanes {
     }
 
     /// Cuts each pixel into `few` + 1 strips and writes the strips' sides to `sides`. The signs of
-    /// the strips alternate and start with 1. Returns what to add to each pixel's error bound: 0,
-    /// or infinity if the pixel could not be cut.
+    /// the strips alternate and start with 1. Returns a number to add to each pixel's error bound:
+    /// 0, or infinity if the pixel could not be cut.
     #[inline(always)]
     fn strips(&self, few: usize, sides: &mut [Sides]) -> Lanes {
         let mut failed = [0.0; PIXELS];
@@ -316,7 +316,7 @@ impl BoardLanes {
             // enters the strips before the line, to the point where the boundary leaves these
             // strips. The chord is a side of two strips. In the outline of the strip after the
             // line, the chord has the stored direction. In the outline of the strip before the
-            // line, it has the opposite direction. The two strips have opposite signs, so that the
+            // line, it has the opposite direction. Because the two strips have opposite signs, the
             // chord's total weight is −2 times the sign of the strip before the line.
             let [up, down] = ends;
             for i in 0..PIXELS {

@@ -286,8 +286,9 @@ fn the_horizon() {
             // bound may be twice that of a mean.
             assert!(found.bound < 1.8e-9, "{view:?}: {found:?}");
             // Five vertical slices make up the pixel. Their edges cross the lines of the board at
-            // other points than the pixel's edges do, so their integrals are sums of other terms.
-            // Within the error bounds, their total must be the integral over the whole pixel.
+            // other points than the pixel's edges, so their integrals are independent computations.
+            // Within the error bounds, the integrals must add up to the integral over the whole
+            // pixel.
             let mut slices = BoundedSum::default();
             for i in 0..5 {
                 let [low, high] = [i, i + 1].map(|i| f64::from(i) / 5.0 - 0.5);
@@ -329,8 +330,8 @@ fn the_end_is_the_limit() {
 }
 
 /// Integrates the board's sign over `polygon` in the limit of a view of 180 degrees, where a pixel
-/// far to the side sees one straight line on the floor. Integrates up to the distance `most` along
-/// the line. Returns the integral, and the area of the part of the polygon that shows greater
+/// far to the side shows only one straight line of the floor. Integrates up to the distance `most`
+/// along the line. Returns the integral, and the area of the part of the polygon that shows greater
 /// distances.
 fn brute_limit(view: &PixelView, polygon: &[DVec2], most: f64) -> (f64, f64) {
     // The point (x, y) of the picture, relative to the middle of the horizon, shows the point of

@@ -17,9 +17,9 @@ use crate::math::{Double, Real};
 /// own tolerance.
 const LEVEL_TRUNCATION: f64 = 1e-3;
 /// Minimum ratio of the depth in the middle of an edge to the change of the depth along the edge,
-/// at which the depth is treated as constant. This approximation adds at most 4/STEADY, about 1e-6,
-/// of the sum of the absolute terms to the error bound. Measured: with 7.5e5 or 1.2e7, no bound
-/// changes.
+/// at which the depth is treated as constant. This approximation adds at most the fraction
+/// 4/`STEADY`, about 1e-6, of the sum of the terms' absolute values to the error bound. Measured:
+/// with 7.5e5 or 1.2e7, no bound changes.
 const STEADY: f64 = 3e6;
 
 /// Computes the alternating sum Σ (−1)^j·X over the crossings j of an edge along which the depth
@@ -86,12 +86,13 @@ pub(super) fn sum(
     let later: f64 = (MODE_TERMS + 1..=series.terms)
         .map(|k| lines * series.size(k, all.depth))
         .sum();
-    // In a steady sum, m^−s is replaced by its value in the middle of the edge. Here m is the
-    // depth, and s is 3, 4 or 5. The relative error is at most s·gN/2m, where N is the number of
+    // If the depth m is treated as constant, m^−s is replaced by its value in the middle of the
+    // edge, where s is 3, 4 or 5. The relative error is at most s·gN/2m, where N is the number of
     // crossings, and g is the change of m from one crossing to the next.
     //
-    // Otherwise, two Lerch series are used. Relative to its first term, each has a rounding error
-    // of about 500·w/2 roundings and a truncation error of at most 0.04·s·(s + 1)/w².
+    // Otherwise, the sum is a difference of two Lerch series. Relative to its first term, each
+    // series has a rounding error of about 500·w/2 unit roundoffs and a truncation error of at most
+    // 0.04·s·(s + 1)/w².
     let model = if is_steady {
         4.0 / STEADY
     } else {

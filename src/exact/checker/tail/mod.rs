@@ -69,8 +69,8 @@ const MAX_TERMS_ADDED: f64 = 300_000.0;
 /// modes may use up the same fraction. The fractions of all kinds of errors must add up to less
 /// than 1.
 const SKIPPED_SHARE: f64 = 0.25;
-/// Fraction of an edge's tolerance that may be used up by leaving out terms of the edge's series
-/// ([`EdgeSeries`]): those that are not summed by Fourier modes. Not critical: with 0.0125 or 0.2,
+/// Fraction of an edge's tolerance that may be used up by leaving out those terms of the edge's
+/// series ([`EdgeSeries`]) that are not summed by Fourier modes. Not critical: with 0.0125 or 0.2,
 /// the measured running time changes by less than 10 %.
 const LATER_TERMS_SHARE: f64 = 0.05;
 /// Approximate time to add one crossing directly, in units of about 50 ns. It is charged to the
@@ -108,9 +108,9 @@ pub(super) fn sum(
         return unknown;
     }
     if all.rise * lines < all.depth {
-        // The depth less than doubles between the edge's ends. A sum from one end to infinity would
-        // extend to much greater depths than the edge, and its Fourier modes would decay too
-        // slowly. `level` sums only between the two ends.
+        // The depth less than doubles between the edge's ends. The sums from its ends to infinity
+        // (`receding`) would extend to much greater depths than the edge, and their Fourier modes
+        // would decay too slowly. `level` uses the modes of the sum between the two ends.
         let sum = level::sum(all, series, trivial, tolerance, budget);
         if sum.bound > tolerance && lines <= MAX_TERMS_ADDED {
             return one_by_one(lines).unwrap_or(sum);
