@@ -132,8 +132,8 @@ mod tests {
             {
                 let key = Key::new(seed, 5).part(seed);
                 let (mut x, mut y) = (vec![0.0; n as usize], vec![0.0; n as usize]);
-                // The points are placed by two calls, of which the first may end within a row of
-                // the grid.
+                // The points are placed by two calls. The first call may end within a row of the
+                // grid.
                 let split = n * 2 / 5;
                 let (first, second) = (split as usize, n as usize);
                 grid.place(key, 0..split, [&mut x[..first], &mut y[..first]]);

@@ -54,8 +54,8 @@ pub(in crate::exact) struct BoundedSum {
 ///
 /// m(a, b) = p·a + q·b + r,
 ///
-/// where (p, q, r) is the third row of M⁻¹. A unit of the floor's area covers J = K/m³ square
-/// pixels, where K = 1/|det M|.
+/// where (p, q, r) is the third row of M⁻¹. At the depth m, a unit of the floor's area covers J =
+/// K/m³ square pixels, where K = 1/|det M|.
 #[derive(Clone, Debug)]
 pub(in crate::exact) struct Homography {
     /// The linear forms N_a and N_b, the numerators of the floor's coordinates a = N_a/L and b =
@@ -187,9 +187,9 @@ impl Homography {
             })
             .sum();
         // Returns the maximum relative error of 1/det M, where M is the matrix of the three forms.
-        // Each of the three factors of a product has a relative error of one `unit`; the products
-        // and their sums, in double-double, have errors of two `unit`s each. The division adds
-        // roundings in `f64`.
+        // The determinant is a sum of products of three factors. Each factor has a relative error
+        // of one `unit`. The products and their sum, in double-double, have errors of two `unit`s
+        // each. The division adds roundings in `f64`.
         let det_off = |unit: f64| {
             if is_singular {
                 f64::INFINITY

@@ -65,7 +65,7 @@ enum PreparedShape {
         height: N,
         scale: N,
     },
-    /// A box: its least corner minus the eye, and its greatest corner minus the eye.
+    /// A box: the vectors from the eye to its least corner and to its greatest corner.
     Box { lo: V, hi: V },
     /// A checkerboard: its height above the eye, and the side of a square.
     Checkerboard { height: N, square: N },
