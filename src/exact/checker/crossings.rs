@@ -232,8 +232,8 @@ impl LineCrossings {
 
 /// Computes the alternating sum Σ (−1)^j·X over `count` consecutive crossings of an edge. j is 0 at
 /// the first of them; the edge has `done` other crossings before it. `series` gives X, the edge's
-/// contribution at a crossing, of which at least the first `terms` terms are added up. The number
-/// is rounded up to a number of terms for which the loop is compiled.
+/// contribution at a crossing, truncated after `terms` terms. `terms` is rounded up to a number of
+/// terms for which the loop is compiled.
 #[multiversion(targets(
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",
