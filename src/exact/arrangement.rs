@@ -18,15 +18,16 @@ use super::{
 };
 
 /// Minimum area of a cell, a polygon between lines, in square pixels. A smaller cell is not cut any
-/// further. Rounding can create slivers that do not exist in exact arithmetic, and each line could
-/// double their number. The whole area of such a cell is added to the error bound, because rounding
-/// may put the point at which its colour is determined outside the cell. A square of this area has
-/// sides of 2⁻²³ pixels, about 10⁹ unit roundoffs.
+/// further. Rounding can create tiny cells that do not exist in exact arithmetic, and each further
+/// line could double their number. The whole area of such a cell is added to the error bound. The
+/// point at which its colour is determined may lie outside the cell because of rounding. A square
+/// of this area has sides of 2⁻²³ pixels, about 10⁹ unit roundoffs.
 const MIN_AREA: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// Factor k of the area limit k·n·e, in square pixels, above which a cell's centre is certainly on
-/// the correct side of a line. A cell is a polygon between lines. It has n vertices, and e is the
-/// maximum error of a value of the line's form a·x + b·y + c.
+/// Factor k of the area limit k·n·e of a cell, a polygon between lines. If the area, in square
+/// pixels, is larger, the cell's centre is certainly on the correct side of each line. Here, n is
+/// the number of the cell's vertices, and e is the maximum error of a value of a line's form a·x +
+/// b·y + c.
 ///
 /// Derivation: the form has the same sign at all vertices, and its value at the centre is the mean
 /// of its values at the vertices. If the centre may be on the wrong side, the absolute value there
@@ -35,9 +36,9 @@ const MIN_AREA: f64 = 1.0 / (1u64 << 46) as f64;
 /// √2 long, so that its area is at most 2·√2·n·e, and 2·√2 < 3.
 const MAX_AREA_PER_HEIGHT: f64 = 3.0;
 
-/// Maximum rounding error of the form a·x + b·y + c of a line at a vertex. At a smaller absolute
-/// value, the sign of the form is uncertain. The form is computed with four roundings of terms that
-/// are at most 2, because the larger of |a| and |b| is about 1.
+/// Maximum rounding error of the form a·x + b·y + c of a line at a vertex. If the absolute value of
+/// the form is not larger, its sign is uncertain. The form is computed with four roundings of terms
+/// that are at most 2, because the larger of |a| and |b| is about 1.
 const ROUNDING: f64 = 8.0 * f64::UNIT;
 
 /// Returns the fraction of a sub-pixel's area that shows each colour. `lines` cut the sub-pixel
@@ -50,8 +51,8 @@ pub fn shares(lines: &[BoundaryLine], mut regions: Regions) -> Shares {
         worst = worst.max(rad);
         // `rad` is the maximum error of a·x + b·y + c, the form of the line, at a vertex. The
         // larger of |a| and |b| is at least 1/2, so the true line is within 2·`rad` of the computed
-        // one. The line is at most √2 long in the pixel. The area between the true and the computed
-        // line is therefore at most 2·√2·`rad`, which is less than 3·`rad`.
+        // line. The line is at most √2 long in the pixel. The area between the true and the
+        // computed line is therefore at most 2·√2·`rad`, which is less than 3·`rad`.
         regions.add_doubtful_area(3.0 * rad);
         for polygon in mem::take(&mut polygons) {
             if regions.budget.is_spent() {
@@ -71,8 +72,8 @@ pub fn shares(lines: &[BoundaryLine], mut regions: Regions) -> Shares {
         let area = area(polygon);
         let inside = center(polygon);
         // The cell's colour is determined at the point `inside`. If this point is close to a line,
-        // rounding may have put it, and even the whole cell, on the wrong side of the line. The
-        // cell's colour is then uncertain.
+        // it or the whole cell may be on the wrong side of the line because of rounding. The cell's
+        // colour is then uncertain.
         let may_be_thin = || area <= MAX_AREA_PER_HEIGHT * polygon.len() as f64 * worst;
         let is_near_line = || {
             lines

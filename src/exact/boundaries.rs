@@ -20,7 +20,7 @@ use super::budget::PixelBudget;
 /// Minimum doubtful area of a conic, in square pixels, at which the conic is computed again in the
 /// highest precision. The doubtful area is the area that the conic's error may put on the wrong
 /// side of the conic. The value is eight unit roundoffs, about the rounding error of a pixel's mean
-/// in `f64`, so that a smaller area does not matter.
+/// in `f64`. A smaller area therefore does not matter.
 const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 
 /// Approximate time to compare the depths of two objects, in units of about 50 ns. It is charged to
@@ -90,8 +90,9 @@ pub fn curves(
     out.clear();
     let boundaries = Boundaries::<Double>::new(world, sub_pixel, candidates, budget);
     // A source is an object or a pair of objects. `imprecise` lists the sources with a curve whose
-    // error is too large in double-double. `incomplete` lists the sources with two surfaces that do
-    // not seem to intersect in double-double. Only the highest precision decides whether they do.
+    // error is too large in double-double. `incomplete` lists the sources with two surfaces whose
+    // intersection cannot be computed in double-double. Only the highest precision decides whether
+    // such surfaces intersect.
     let (mut imprecise, mut incomplete) = (Vec::new(), Vec::new());
     let mut incomplete_curves = Vec::new();
     let mut room = max_curves;
@@ -110,9 +111,10 @@ pub fn curves(
             merge_equal_curves(out);
             room = out.len() + max_curves;
         }
-        // Equal curves are merged whenever `out` is longer than `room`. After a merge, `room` is
-        // set to the number of remaining curves plus `max_curves`. So if `room` is more than twice
-        // `max_curves`, more than `max_curves` unequal curves were found, and the search stops.
+        // Equal curves are merged whenever `out` has more than `room` curves. After a merge, `room`
+        // is the number of remaining curves plus `max_curves`. If `room` exceeds twice
+        // `max_curves`, there are therefore more than `max_curves` unequal curves, and the search
+        // stops.
         if room > 2 * max_curves || budget.is_spent() {
             return ControlFlow::Break(());
         }
@@ -214,9 +216,9 @@ impl<'a, T: Precision> Boundaries<'a, T> {
     }
 
     /// Appends to `out` the boundary curves of `source` that may pass through the sub-pixel.
-    /// Returns `false` if two surfaces of the source have no intersection curve in the precision
-    /// `T`. Two such surfaces are equal planes or concentric spheres, or would be without rounding
-    /// errors.
+    /// Returns `false` if the intersection curve of two surfaces of the source cannot be computed
+    /// in the precision `T`. The surfaces are then equal planes or concentric spheres, perhaps only
+    /// because of rounding errors.
     fn push(&self, source: BoundarySource, out: &mut Vec<Boundary>) -> bool {
         let mut push = |curve: Boundary| {
             if curve.may_cross_pixel() {
@@ -260,9 +262,9 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         self.objects[at].get_or_init(|| {
             self.charge_big_curve();
             let object = T::object(&self.world.geometry, self.candidates[at].object);
-            // If there are more candidates than slots in the world's cache of prepared objects, the
-            // cache cannot keep all of them. An object may then have to be prepared again, so this
-            // work is charged.
+            // If there are more candidates than slots in the world's cache of prepared objects, an
+            // object may have to be prepared again for every sub-pixel. The preparation is then
+            // charged to the budget.
             let is_prepared_again = self.candidates.len() > CACHE_SLOTS;
             match *object {
                 Object::Convex(_) if is_prepared_again => self.budget.charge(PREPARATION_WORK),

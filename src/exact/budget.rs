@@ -1,9 +1,9 @@
 //! Limits on the work on a pixel and on a picture, and the requested accuracy.
 //!
-//! In: the work of the next computation, in units of about 50 ns. Out: whether to do it. A region
-//! that is not computed any more gets the mean of the colours that may be seen in it, with its
-//! whole area as the error bound, so that every pixel of any scene is finished. Work is counted
-//! instead of timed, so that the same scene gives the same picture.
+//! In: the work of the next computation, in units of about 50 ns. Out: whether to do it. If the
+//! budget of a pixel is spent, the rest of the pixel is not computed, and its area is added to the
+//! error bound. Every pixel of any scene is therefore finished. Work is counted, not timed, so that
+//! the same scene gives the same picture on every machine.
 
 use std::{
     cell::Cell,
@@ -11,9 +11,8 @@ use std::{
 };
 
 /// Maximum work on a pixel, in units of about 50 ns. It limits the time for a pixel of any scene to
-/// about 0.6 seconds; the area that is not computed by then is added to the error bound. A unit is
-/// the time to cut one square of a checkerboard out of a polygon on the machine where it was
-/// measured.
+/// about 0.6 seconds. The area that is not computed by then is added to the error bound. 50 ns is
+/// the measured time to cut one square of a checkerboard out of a polygon.
 const PIXEL_WORK: f64 = 1.2e7;
 
 /// Work of all threads on the pixels of a picture, and its limit.
@@ -46,7 +45,8 @@ impl PictureWork {
     }
 }
 
-/// Work that may still be spent on a pixel, with the flag that cancels its picture.
+/// Work that may still be spent on a pixel, and the flag that cancels the computation of its
+/// picture.
 #[derive(Debug)]
 pub(super) struct PixelBudget<'a> {
     left: Cell<f64>,

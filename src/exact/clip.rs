@@ -1,10 +1,10 @@
-//! Clipping of convex polygons by lines. Everything in `exact` uses it except the SIMD lanes of
-//! `strips_simd`.
+//! Clipping of convex polygons by lines. All of `exact` uses these functions, except `strips_simd`,
+//! which cuts eight pixels at once.
 //!
-//! In: a convex polygon and a linear form. Out: the parts on both sides of the form's zero line
-//! (Sutherland and Hodgman, "Reentrant polygon clipping", 1974, one half-plane at a time). A new
-//! corner lies where a side of the polygon crosses the zero line. Rounding displaces it by a few
-//! unit roundoffs along the side; callers add this error to their bounds.
+//! In: a convex polygon and a linear form. Out: the parts on both sides of the line where the form
+//! is 0 (Sutherland and Hodgman, "Reentrant polygon clipping", 1974). A new corner lies where a
+//! side of the polygon crosses this line. Rounding displaces the corner by a few unit roundoffs
+//! along the side. Callers add this error to their bounds.
 
 use glam::DVec2;
 

@@ -4,9 +4,9 @@
 //! In: an arc as a rational quadratic Bézier curve. Out: the segment's area in closed form, and the
 //! integral of the board's sign over the segment. For the integral, the arc is cut wherever it
 //! crosses a line of the board. The segment of each piece then lies in one square, and the chords
-//! of the pieces bound a convex polygon. Segments below a minimum area are neglected, so that their
-//! number is limited towards the horizon. The error bound includes the neglected areas and the
-//! rounding errors of positions.
+//! of the pieces bound a convex polygon. Near the horizon, an arc may cross very many lines.
+//! Segments below a minimum area are therefore neglected. The error bound includes the neglected
+//! areas and the rounding errors of positions.
 
 use glam::DVec2;
 
@@ -16,19 +16,19 @@ use super::{
 };
 
 /// Maximum of |1 − w²| at which the area of an arc of weight w is computed by a series. Above this
-/// maximum, a closed formula is used, which loses digits near w = 1, a parabola. The first of the
-/// terms that the series omits is at most 0.36³⁴ = 8e-16.
+/// maximum, a closed formula is used, which loses digits near w = 1, a parabola. The first omitted
+/// term of the series is at most 0.36³⁴ = 8e-16.
 const NEAR_PARABOLA: f64 = 0.36;
 
-/// Maximum number of a board's lines at which an arc is cut into pieces. If more lines cross the
-/// arc, it is halved first. Measured: with 48, boards of small squares behind spheres take up to 50
-/// % longer.
+/// Maximum number of lines of a board along which an arc is cut into pieces at once. If more lines
+/// cross the arc, it is halved first. Measured: with 48 instead of 12, boards of small squares
+/// behind spheres take up to 50 % longer.
 const MAX_LINES: f64 = 12.0;
 /// Maximum total area of the segments (between arc and chord) of an arc's two halves, divided by
 /// the area of the whole arc's segment. A larger quotient shows that numbers are too large or too
 /// small to represent the arc. The arc is then not halved, and its segment is added to the error
 /// bound. The exact quotient is 1/4 for a parabola and less for a hyperbola. For an ellipse, it is
-/// at most 0.37, if the arc is half of the ellipse. The constant is about 2 · 0.37.
+/// at most 0.37; this maximum is reached by half of an ellipse. The constant is about 2 · 0.37.
 const MAX_HALVES_SHARE: f64 = 0.75;
 
 /// An arc of a conic: the rational quadratic Bézier curve with weights 1, w and 1.
@@ -66,12 +66,14 @@ impl Arc {
         let area = 0.5 * (products[0] - products[1]).abs() * share;
         BoundedSum {
             value: area,
-            // The area is half the difference of `products`, times `share`, the share of the
-            // triangle that the segment covers. `share` is computed with up to ten roundings. At |1
-            // − w²| = `NEAR_PARABOLA`, the difference θ − sin θ·cos θ in `share` is only a quarter
-            // of θ, so that the roundings of its two terms are four times as large, relative to the
-            // difference. In a flat triangle, the two products are nearly equal. Their own
-            // roundings, three each, may then exceed those of their difference.
+            // The area is half the difference of `products`, times `share`, the fraction of the
+            // triangle that the segment covers. The first term of the bound covers the roundings of
+            // `share`, at most ten. Where `share` is computed as a difference, such as θ − sin
+            // θ·cos θ, |1 − w²| is at least `NEAR_PARABOLA`, and the difference is at least a
+            // quarter of θ. The subtraction therefore makes relative errors at most four times as
+            // large. The second term covers three roundings of each product. In a flat triangle,
+            // the two products are nearly equal, and their roundings may be large compared with the
+            // area.
             bound: UNIT * (48.0 * area + 2.0 * (products[0].abs() + products[1].abs()) * share),
         }
     }
@@ -125,7 +127,8 @@ fn triangle_share(w: f64) -> f64 {
 ///
 /// (θ − sin θ·cos θ)/sin³θ = Σ 2/(2k + 3)·C(2k, k)/4^k·z^k.
 ///
-/// The series follows from the integral of 2x²/√(1 − x²).
+/// It follows from the binomial series of 2x²/√(1 − x²), whose integral from 0 to sin θ is θ − sin
+/// θ·cos θ.
 fn series(z: f64) -> f64 {
     const TERMS: usize = 34;
     const COEFFICIENTS: [f64; TERMS] = {
@@ -139,7 +142,7 @@ fn series(z: f64) -> f64 {
         }
         all
     };
-    // Because |z| < 2^−`bits`, the terms after the first `terms` add up to less than a rounding.
+    // Because |z| < 2^−`bits`, the omitted terms add up to less than a unit roundoff.
     let bits = (-1 - libm::ilogb(z)).max(1);
     let terms = (f64::MANTISSA_DIGITS as usize / bits as usize + 1).min(TERMS);
     let terms = COEFFICIENTS[..terms].iter().rev();
@@ -156,10 +159,10 @@ impl Homography {
         // lies in one square. The chords of the pieces enclose the rest of the region, a convex
         // polygon.
         //
-        // A piece whose segment is smaller than `neglected` is replaced by its chord. If an arc
-        // with a segment of area A is cut into n pieces, each piece has a segment of A/n³, and all
-        // pieces together have A/n². If n = √(A/t), this total is the tolerance t, and a piece's
-        // segment is t^(3/2)/√A, the value of `neglected`.
+        // A piece whose segment is smaller than `neglected` is replaced by its chord. Let A be the
+        // area of the arc's segment and t the tolerance. If the arc is cut into n pieces, a piece's
+        // segment has about the area A/n³, and all of them together have A/n². For n = √(A/t), this
+        // total is t, and a piece's segment has the area t^(3/2)/√A, the value of `neglected`.
         if let Some(sign) = self.square_of(arc) {
             return over_one_square(segment, sign);
         }
@@ -257,10 +260,10 @@ impl Homography {
         Some(sign)
     }
 
-    /// Returns the numbers of the first and last line of one of the board's families of lines that
-    /// may cross an arc: the lines a = i if `family` is 0, and b = i if it is 1. The first exceeds
-    /// the last if no line crosses the arc. Returns `None` if the arc's triangle may reach the
-    /// horizon.
+    /// Returns the numbers of the first and the last line of one of the board's two families that
+    /// may cross an arc. If `family` is 0, the lines are a = i; if it is 1, they are b = i. If no
+    /// line crosses the arc, the first number exceeds the last. Returns `None` if the arc's
+    /// triangle may reach the horizon.
     fn lines(&self, arc: &Arc, family: usize) -> Option<(f64, f64)> {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for p in [arc.start, arc.control, arc.end] {
@@ -297,8 +300,8 @@ struct Chords {
 /// Returns the roots between 0 and 1 of f0·(1 − t)² + f1·t·(1 − t) + f2·t². Each entry is `None` if
 /// there is no such root.
 fn roots(f0: f64, f1: f64, f2: f64) -> [Option<f64>; 2] {
-    // Without scaling, the products underflow if the squares of the board are extremely large,
-    // because f0, f1 and f2 are then tiny.
+    // If the squares of the board are extremely large, f0, f1 and f2 are tiny. Their products would
+    // underflow without scaling.
     let scale = 1.0 / f0.abs().max(f1.abs()).max(f2.abs());
     let [f0, f1, f2] = [f0 * scale, f1 * scale, f2 * scale];
     let discriminant = f1 * f1 - 4.0 * f0 * f2;

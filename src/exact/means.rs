@@ -1,4 +1,4 @@
-//! Means of a pixel's values, computed from the colours' shares.
+//! Means of the colours' values over a pixel.
 //!
 //! In: the fraction of a pixel that shows each colour, with an error bound. Out: the mean of each
 //! value of the colours, with its bound.
@@ -53,14 +53,16 @@ impl<const N: usize> Integrator<'_, N> {
         let widths = (0..N).map(|i| greatest[i] - least[i]);
         ExactPixel {
             mean: array::from_fn(|i| least[i].midpoint(greatest[i])),
-            // The ends of the range are at most 1. Each causes two roundings, so four are added.
+            // The two ends of the range are at most 1, and each causes at most two roundings of one
+            // unit roundoff.
             bound: 0.5 * widths.fold(0.0, f64::max) + 4.0 * UNIT,
         }
     }
 }
 
-/// Returns the maximum rounding error of a mean of `colors` colours. Two sums cause `colors`
-/// roundings each, the products and the quotient one each. A single colour is exact.
+/// Returns the maximum rounding error of a mean of `colors` colours. The sum of the shares and the
+/// sum of the products cause at most `colors` roundings each. The products and the quotient cause
+/// one each. The mean of a single colour is exact.
 pub(super) fn rounding(colors: usize) -> f64 {
     match colors {
         0..=1 => 0.0,

@@ -3,19 +3,21 @@
 //! In: the prepared scene and the part of the picture to compute. Out: the mean of each pixel in
 //! linear light, with a bound on the mean's error. In ordinary views, the bound is at most 1e-9
 //! unless the caller asks for less accuracy. A view is ordinary if the vertical field of view is 1
-//! to 170 degrees, squares are 1e-4 to 1e6 times the eye's height, and all numbers are 0 or within
-//! 1e±9. In other views, the bound may be larger, up to 1 for a pixel that cannot be computed. The
-//! work on a pixel is limited to about a second on the machine where it was measured (`budget`).
+//! to 170 degrees, squares are 1e-4 to 1e6 times the eye's height, and every number is 0 or between
+//! 1e-9 and 1e9 in absolute value. In other views, the bound may be larger, up to 1 for a pixel
+//! that cannot be computed. The work on a pixel is limited: no pixel takes more than about a second
+//! (`budget`).
 //!
 //! Lines and conics divide a pixel into regions, each of which shows one colour or one
 //! checkerboard. The means are therefore computed in four steps:
 //!
-//! 1. The picture is quartered until each part certainly shows one colour or is a single pixel.
-//!    Pixels that show only a checkerboard, and few of its lines, are computed eight at a time
-//!    (`checker::board_pixels`).
-//! 2. In any other pixel, the boundaries of what may be seen there cut it into regions. These are
-//!    convex polygons if all boundaries are lines (`arrangement`), and slabs between neighbouring
-//!    curves if some are conics (`slabs`). A pixel with too many curves is quartered first.
+//! 1. The picture is quartered repeatedly, until each part certainly shows one colour or is a
+//!    single pixel. Pixels that show only a checkerboard, and few of its lines, are computed eight
+//!    at a time (`checker::board_pixels`).
+//! 2. Any other pixel is cut into regions along the boundaries of the objects that may be seen
+//!    there. If all boundaries are lines, the regions are convex polygons (`arrangement`). If some
+//!    are conics, the pixel is cut into vertical strips, and each strip between neighbouring curves
+//!    (`slabs`). A pixel with too many curves is quartered first.
 //! 3. One ray into each region determines what is seen there (`region`). The ray is traced with the
 //!    same exact decisions as in a sampled picture. Hidden boundaries do no harm, because both
 //!    sides of them get the same colour. (Catmull, "A hidden-surface algorithm with anti-aliasing",
@@ -70,10 +72,10 @@ use self::{
 /// colour. It is a little below 1e-9, to leave room for the rounding of sums.
 const DEFAULT_TOLERANCE: f64 = 9e-10;
 /// Maximum number of curves that pass through a whole pixel. With more curves, the pixel is
-/// quartered before anything is computed. n curves cross at about n² points, where all curves have
-/// to be examined; a quarter has only about half of the curves. Measured: with 6 instead of 12, a
-/// dozen objects take 10 % longer. A heap of 300 objects takes twice as long with 24 as with 6, and
-/// seven times as long with 96 as with 24.
+/// quartered before anything is computed. n curves cross at about n² points, and the work at each
+/// of them is proportional to n. In a quarter, there are only about half as many curves. Measured:
+/// with 6 instead of 12, a dozen objects take 10 % longer. A heap of 300 objects takes twice as
+/// long with 24 as with 6, and seven times as long with 96 as with 24.
 const MAX_CURVES: usize = 12;
 /// Number by which the maximum number of curves in a square part of a pixel grows with each
 /// quartering. Curves that still pass through the same small part are unlikely to be separated in
@@ -81,25 +83,27 @@ const MAX_CURVES: usize = 12;
 /// thirds of the time; with 16, it takes four times as long.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// Maximum number of times per pixel that an already computed part of the pixel is quartered to
-/// reduce its error bound. Near a point that a few curves share, each quartering reduces the bound
-/// to a quarter; 16 of them reduce it by a factor of 2^32.
+/// reduce its error bound. Near a point where several curves meet, each quartering reduces the
+/// bound to a quarter; 16 quarterings reduce it by a factor of 2^32.
 const MAX_QUARTERINGS: usize = 16;
 /// Maximum memory of a pixel's queued parts, in bytes. Temporary memory for computing a part is not
 /// included. Above the maximum, no part is quartered any more, and the areas of parts that are not
 /// computed are added to the error bound. A smaller maximum would cause this error more often.
 const MAX_MEMORY: usize = 64 << 20;
 /// Minimum side, in pixels, of a square part of a pixel that is quartered because too many curves
-/// pass through it. A smaller part is not quartered. Its area, less than a unit roundoff of the
-/// pixel's area, is added to the error bound.
+/// pass through it. A smaller part is not quartered. Its area, at most 2⁻⁵⁶ of the pixel's area, is
+/// added to the error bound.
 const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
 /// Work charged to a pixel's budget per square part of the pixel ([`PixelPiece`]), in units of
-/// about 50 ns. A rough value is enough, because the budget only stops what takes too long.
+/// about 50 ns. A rough value is enough, because the budget only stops computations that take too
+/// long.
 const PIECE_WORK: f64 = 100.0;
 /// Work charged per object that may be seen in a part of a pixel, in units of about 50 ns. A rough
-/// value is enough, because the budget only stops what takes too long.
+/// value is enough, because the budget only stops computations that take too long.
 const OBJECT_WORK: f64 = 4.0;
-/// Work charged per ordered pair of curves in a part of a pixel with a conic, in units of about
-/// 50 ns. Without it, half of the time measured for a heap of 10⁴ spheres is not accounted for.
+/// Work charged per ordered pair of curves in a part of a pixel, in units of about 50 ns. It is
+/// charged only if one of the curves is a conic. Without this charge, half of the time measured for
+/// a heap of 10⁴ spheres would not be counted.
 const SLABS_WORK: f64 = 60.0;
 /// Work charged per pixel that shows only a few squares of a checkerboard, in units of about 50 ns.
 const BOARD_PIXEL_WORK: u64 = 10;
@@ -126,7 +130,8 @@ pub struct Integrator<'a, const N: usize = 3> {
     work: PictureWork,
 }
 
-/// A square part of a pixel (a piece), for which the colours' shares are computed separately.
+/// A square part of a pixel (a piece). The fraction of its area that shows each colour is computed
+/// separately from that of other pieces.
 struct PixelPiece {
     sub_pixel: SubPixel,
     /// Objects that may be seen in this part of the pixel.
@@ -218,8 +223,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let mut curves = Vec::new();
         let mut scratch = Scratch::default();
         let mut batches = BoardBatches::new();
-        // Checkerboard pixels that are computed alone, because too many lines cross them or the
-        // result of their batch was not accurate enough.
+        // Checkerboard pixels that are computed one at a time instead of eight together, because
+        // too many lines cross them or the result of the eight was not accurate enough.
         let mut deferred = Vec::new();
         let is_over = || cancel.load(Relaxed) || self.work.is_exceeded();
         let flow = self.quartering.parts(part, &mut scratch, &mut |part| {
@@ -243,7 +248,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
                     }
                     _ => film.set(x, y, self.pixel(x, y, candidates, &mut curves, cancel)),
                 },
-                // `Quartering::new` sets no limit on candidates, so that no part is crowded.
+                // A part is `Crowded` only if it has more candidates than a limit, and
+                // `Quartering::new` sets no limit.
                 PicturePart::Crowded { .. } => {
                     unreachable!("every part of an exact picture is quartered")
                 }
@@ -263,11 +269,11 @@ impl<'a, const N: usize> Integrator<'a, N> {
         (flow.is_continue() && !is_over()).then_some(film.pixels)
     }
 
-    /// Calls `show` with each area that shows only one entry of the world's palette, and with each
-    /// other pixel, together with the fraction of the area that shows each entry. An entry is a
-    /// colour or, in a world made by [`World::by_object`], an object. If the work limit is
-    /// exceeded, each remaining pixel is treated as showing only the entry in its middle. Returns
-    /// whether the errors of all fractions are at most 1e-6.
+    /// Divides `part` into areas that show only one entry of the world's palette, and single
+    /// pixels. Calls `show` with each of them and the fraction of its area that shows each entry.
+    /// An entry is a colour or, in a world made by [`World::by_object`], an object. If the work
+    /// limit is exceeded, each remaining pixel is treated as showing only the entry in its middle.
+    /// Returns whether the errors of all fractions are at most 1e-6.
     pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
         let mut is_exact = true;
         let mut curves = Vec::new();
@@ -317,9 +323,10 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 
     /// Computes the fraction of the pixel (`x`, `y`) that shows each colour. While the total error
-    /// bound of the pixel's parts exceeds the tolerance, quarters the part with the largest bound,
-    /// unless a limit ([`MIN_SIDE`], [`MAX_QUARTERINGS`]) forbids it or the last quartering hardly
-    /// helped. Stops when the budget is spent or [`MAX_MEMORY`] would be exceeded.
+    /// bound of the pixel's parts exceeds the tolerance, quarters the part with the largest bound.
+    /// A part is not quartered if it has reached a limit ([`MIN_SIDE`], [`MAX_QUARTERINGS`]) or if
+    /// the last quartering hardly reduced the bound. Stops when the budget is spent or
+    /// [`MAX_MEMORY`] would be exceeded.
     fn pixel_shares(
         &self,
         x: u32,
@@ -339,7 +346,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         while bound > self.tolerance
             && !budget.is_spent()
             && queue.peek().is_some_and(|ByKey(_, worst)| {
-                // A full queue doubles when parts are added; old and new memory then both exist.
+                // If the queue is full, adding parts copies it to twice as much memory. During the
+                // copy, the old and the new memory both exist.
                 let copies = 1 + 2 * usize::from(queue.len() + 3 > queue.capacity());
                 let places = copies * queue.capacity() * size_of::<ByKey<PixelPiece>>();
                 memory + places + 4 * worst.memory() <= MAX_MEMORY
@@ -416,7 +424,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
     /// board's sign. Returns `None` if `sum` is `None` or its bound exceeds the tolerance.
     fn board_mean(&self, pixel: &BoardPixel, sum: Option<BoundedSum>) -> Option<ExactPixel<N>> {
         let BoundedSum { value, bound } = sum?;
-        // The bound includes the rounding errors of the first colour's share and of the mean.
+        // `UNIT` bounds the rounding errors of the two colours' shares, and `rounding(2)` that of
+        // the mean.
         let (half, bound) = (0.5 * value, 0.5 * bound + UNIT + rounding(2));
         let [first, second] = self.world.slots(pixel.candidate.object);
         (bound <= self.tolerance)
@@ -424,7 +433,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 
     /// Computes the colours' shares in a part of a pixel. If too many curves pass through it or the
-    /// budget is spent, the part is [`Crowded`](PieceState::Crowded), and all of it is doubtful.
+    /// budget is spent, the part is [`Crowded`](PieceState::Crowded), and its whole area is added
+    /// to the error bound.
     fn piece(
         &self,
         sub_pixel: SubPixel,
@@ -445,8 +455,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
             let shares = match lines.collect::<Option<Vec<_>>>() {
                 Some(lines) => arrangement::shares(&lines, regions),
                 None => {
-                    // The work grows with the pairs of curves, because each conic is compared with
-                    // all other curves.
+                    // The work grows with the number of pairs of curves, because each conic is
+                    // compared with all other curves.
                     budget.charge(SLABS_WORK * (curves.len() * curves.len()) as f64);
                     slabs::shares(curves, regions)
                 }

@@ -3,9 +3,9 @@
 //! In: regions between boundaries, with a point inside each. Out: the fraction of the sub-pixel's
 //! area that shows each colour, with an error bound. One ray through the point decides which object
 //! is seen in the region; a checkerboard is then integrated by `checker` and `conic_segment`. The
-//! error bound is the sum of three terms: the bounds of the integrals; the areas whose colour the
-//! callers report as doubtful; and the difference between the regions' total area and the
-//! sub-pixel's area.
+//! error bound is the sum of three terms: the bounds of the integrals; the areas whose colour is
+//! uncertain (`Regions::add_doubtful_area`); and the difference between the regions' total area and
+//! the sub-pixel's area.
 
 use std::mem;
 
@@ -31,8 +31,8 @@ const REGION_WORK: f64 = 4.0;
 /// long.
 const RAY_WORK: f64 = 0.5;
 /// Work charged to the pixel's budget per candidate object that a region's ray may hit, in units of
-/// about 50 ns, if double-double arithmetic does not decide what the ray hits. The highest
-/// precision ([`Big`]) then decides, and each object takes hundreds of times as long.
+/// about 50 ns. It is charged only if the highest precision ([`Big`]) has to decide what the ray
+/// hits. Each object then takes hundreds of times as long.
 const BIG_RAY_WORK: f64 = 200.0;
 
 /// Fractions of the area of a pixel or sub-pixel that show each colour.
@@ -61,8 +61,8 @@ pub struct Regions<'a> {
 /// A checkerboard in the coordinates of a sub-pixel.
 pub struct LocalBoard {
     pub board: Homography,
-    /// Whether the second colour is on the square 0 ≤ a < 1, 0 ≤ b < 1, where a and b are the
-    /// coordinates in `board`.
+    /// Whether the square 0 ≤ a < 1, 0 ≤ b < 1 has the second colour. Here, a and b are the
+    /// coordinates on the board, as computed by `board`.
     pub odd: bool,
     /// Maximum error of a value of one of the board's linear forms c0·x + c1·y + c2, divided by the
     /// maximum of |c0·x| + |c1·y| + |c2| in the sub-pixel.
@@ -111,8 +111,8 @@ impl<'a> Regions<'a> {
         }
     }
 
-    /// Adds the area of a region to the area of the colour or colours seen in it. No boundary may
-    /// cross the region.
+    /// Adds the area of a region to the share of its colour, or divides it between the two colours
+    /// of a checkerboard. No boundary may cross the region.
     pub fn add(&mut self, region: &Region) {
         let Some(object) = self.seen(region) else {
             return self.shares.add(self.world.background(), region.area);
@@ -128,8 +128,8 @@ impl<'a> Regions<'a> {
         };
         let sum = self.boards[at].1.sum(region, self.budget);
         let half = 0.5 * sum.value;
-        // A share lies between 0 and the region's area, so its error is at most the larger of the
-        // two colours' shares.
+        // The true share of a colour lies between 0 and the region's area. The error of a computed
+        // share is therefore at most the larger of the two computed shares.
         let bound = (0.5 * sum.bound).min(0.5 * region.area + half.abs());
         self.shares.add(first, 0.5 * region.area + half);
         self.shares.add(second, 0.5 * region.area - half);
@@ -167,8 +167,8 @@ impl<'a> Regions<'a> {
         found
     }
 
-    /// Adds to the error bound an area that may have been added to the wrong region, or to none.
-    /// `area` is a fraction of the sub-pixel's area.
+    /// Adds to the error bound an area whose colour is uncertain. `area` is a fraction of the
+    /// sub-pixel's area.
     pub fn add_doubtful_area(&mut self, area: f64) {
         self.shares.bound += area;
     }
@@ -181,19 +181,19 @@ impl<'a> Regions<'a> {
         let total: f64 = shares.by_slot.iter().map(|(_, share)| share).sum();
         shares.bound += (1.0 - total).abs();
         if !(shares.bound.is_finite() && total > 0.0 && total < 2.0) {
-            // Only an overflow of intermediate results can make the bound infinite or NaN, or the
-            // total far from 1. The shares are then meaningless.
+            // The bound is infinite or NaN, or the total is far from 1, only if intermediate
+            // results have overflowed. The shares are then meaningless.
             return self.unknown();
         }
-        // The bound is limited to 1, because a channel of the pixel's mean colour cannot have a
-        // larger error.
+        // Channels lie between 0 and 1, so a channel of the pixel's mean colour cannot have an
+        // error above 1.
         shares.bound = shares.bound.min(1.0);
         shares
     }
 
     /// Returns shares with the bound 1, for a sub-pixel that is not computed. The whole area is
-    /// given to the object in the middle of the sub-pixel. If the object has two colours, each gets
-    /// half of the area.
+    /// given to the object that is seen in the middle of the sub-pixel. If this object has two
+    /// colours, each gets half of the area.
     pub fn unknown(&self) -> Shares {
         let (object, _) = self.object_at(DVec2::ZERO);
         let background = [self.world.background(); 2];
@@ -240,9 +240,9 @@ impl LocalBoard {
         }
         BoundedSum {
             value: if self.odd { -sum.value } else { sum.value },
-            // `sum.bound` assumes that each factor of the board's forms has an error of one
-            // rounding. `relative_error` may be many times as large, so the bound is multiplied by
-            // one plus the ratio of the two.
+            // `sum.bound` assumes that each factor of the board's forms has a relative error of
+            // `UNIT`. The actual error, `relative_error`, may be many times as large, so the bound
+            // is multiplied by 1 plus the ratio of the two errors.
             bound: sum.bound * (1.0 + self.relative_error / f64::UNIT),
         }
     }

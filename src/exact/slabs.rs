@@ -4,10 +4,10 @@
 //! curves in each slab, added to [`Regions`].
 //!
 //! Within a slab, each curve lies between its chord and its tangents. If two neighbouring curves
-//! may cross according to these bounds, the slab is cut. It is cut at the crossing if the curves
-//! have a different order at one of the slab's ends, otherwise in the middle. Not every crossing
-//! has to be found: if a slab is too narrow to cut, the area between its unseparated curves is
-//! added to the error bound.
+//! may cross according to these bounds, the slab is cut. If the order of the curves at one end of
+//! the slab differs from that in the middle, the cut is at their crossing. Otherwise, it is in the
+//! middle of the slab. Not every crossing has to be found: if a slab is too narrow to cut, the area
+//! between its unseparated curves is added to the error bound.
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
@@ -23,15 +23,14 @@ use super::{
 };
 
 /// Maximum distance in y, in pixels, by which a curve may lie on the wrong side of its neighbour
-/// and still be treated as lying on the correct side. It is the maximum rounding error of the
-/// distance: the difference of two values of at most 1, each with an error of at most eight unit
-/// roundoffs.
+/// without the slab being cut. It is the maximum rounding error of the distance, which is the
+/// difference of two values of at most 1, each with an error of at most eight unit roundoffs.
 const ORDER_TOLERANCE: f64 = 16.0 * f64::UNIT;
 
-/// Maximum distance in y, in pixels, between neighbouring curves at which a slab (a vertical strip)
-/// is not cut although the curves may cross in it. The area between the curves is added to the
-/// error bound instead. The value is a thousand unit roundoffs, so that the area is at most about
-/// 10⁻¹³ square pixels.
+/// Maximum distance in y, in pixels, between neighbouring curves that may cross in a slab (a
+/// vertical strip) without the slab being cut. The area between the curves is added to the error
+/// bound instead. The value is a thousand unit roundoffs, so the area is at most about 10⁻¹³ square
+/// pixels.
 const MIN_DISTANCE: f64 = 1.0 / (1u64 << 43) as f64;
 
 /// Minimum width of a slab (a vertical strip) that is cut, in pixels. In a narrower slab, the area
@@ -44,14 +43,14 @@ const MIN_WIDTH: f64 = 1.0 / (1u64 << 48) as f64;
 /// by at most 2 % and the running time by at most 10 %.
 const MAX_ADDED_SLABS: usize = 4096;
 
-/// Maximum number of steps of the false position method that searches where two curves cross. After
-/// the last step, its estimate is used. Bisection would need 53 steps to narrow an interval from a
+/// Maximum number of steps of the false position method that searches where two curves cross. The
+/// estimate of the last step is used. Bisection would need 53 steps to narrow an interval from a
 /// pixel's side to the unit roundoff; the value is a little more.
 const MAX_STEPS: usize = 60;
 
-/// Maximum rounding error of the area of a region in a slab, divided by the slab's width. Two
-/// values of y of at most 1/2, each with a relative error of eight unit roundoffs, contribute eight
-/// unit roundoffs. Products and sums contribute at most another eight.
+/// Maximum rounding error of the area of a region in a slab, divided by the slab's width. The two
+/// values of y are at most 1/2, and each has a relative error of eight unit roundoffs; together
+/// they contribute eight unit roundoffs. Products and sums contribute at most another eight.
 const ROUNDING: f64 = 16.0 * f64::UNIT;
 
 /// Returns the fraction of a sub-pixel's area that shows each colour. `curves` cut the sub-pixel
@@ -62,9 +61,10 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     for curve in curves {
         match curve {
             Boundary::Line(line) => {
-                // The line is at most √2 long. It is displaced by at most 2·`line.rad`, because the
-                // larger of its factors of x and y is at least 1/2, and 2·√2 < 3. `ROUNDING` covers
-                // the rounding errors of areas.
+                // The line is at most √2 long in the pixel. It is displaced by at most
+                // 2·`line.rad`, because the larger of its factors of x and y is at least 1/2. The
+                // doubtful area is at most the product, and 2·√2 < 3. `ROUNDING` covers the
+                // rounding errors of areas.
                 regions.add_doubtful_area(3.0 * line.rad);
                 match Track::of_line(line) {
                     Some(track) => lines.push(track),
@@ -91,9 +91,9 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     cuts.retain(|x| x.abs() <= 0.5);
     cuts.sort_unstable_by(f64::total_cmp);
     cuts.dedup();
-    // Area up to which two neighbouring curves of a slab may overlap without a cut. If there is one
-    // such pair in each of the `MAX_ADDED_SLABS` slabs, their areas add up to the pixel's
-    // tolerance.
+    // Maximum area by which two neighbouring curves of a slab may overlap without the slab being
+    // cut. If one pair of curves overlaps by this area in each of `MAX_ADDED_SLABS` slabs, the
+    // areas add up to the pixel's tolerance.
     let doubtful_limit = regions.budget.tolerance / MAX_ADDED_SLABS as f64;
     let mut all = Slabs {
         lines,
@@ -261,8 +261,8 @@ fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, r
             last = Ordering::Less;
         }
     }
-    // A cut closer to an end than half the minimum width would leave a slab that is too narrow. The
-    // slab is then cut in the middle.
+    // If the crossing is closer to an end than half the minimum width, a cut there would leave a
+    // slab that is too narrow. The slab is then cut in the middle.
     if inside > left + 0.5 * MIN_WIDTH && inside < right - 0.5 * MIN_WIDTH {
         inside
     } else {

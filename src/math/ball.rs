@@ -11,8 +11,9 @@ pub struct Doubt;
 
 /// A real number known to lie within `rad` of `mid`.
 ///
-/// The radius of each result covers the radii of the operands and the operation's own rounding. A
-/// ball whose radius is infinite or NaN, as after an overflow, contains every number.
+/// The radius of each result covers the radii of the operands and the operation's own rounding.
+/// After an overflow, the radius is infinite or NaN, and the ball counts as containing every
+/// number.
 #[derive(Clone, Debug)]
 pub struct Ball<T: Real> {
     /// The computed number, the ball's midpoint.
@@ -28,9 +29,9 @@ pub const UP: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
 /// Factor in the bound on the rounding error of a ball's midpoint. The bound is this factor times
 /// [`UNIT`](Real::UNIT) times the computed midpoint. A factor of 2 would suffice: `UNIT` bounds the
-/// error relative to the true number, which is less than twice the computed one. A larger factor
-/// makes more decisions uncertain. This seldom matters, because an uncertain decision is made in
-/// the next precision.
+/// error relative to the true number, which is less than twice the computed one. The larger factor
+/// 4 makes a few more decisions uncertain. This costs little, because an uncertain decision is only
+/// repeated in the next precision.
 const ROUNDING: f64 = 4.0;
 
 impl<T: Real> Ball<T> {
@@ -139,7 +140,7 @@ impl<T: Real> Ball<T> {
     #[inline]
     pub fn sqrt(&self) -> Self {
         if !self.is_clear() {
-            // The number may be 0. The midpoint of the root is 0, and its radius follows from |√a −
+            // The number may be 0. The root's midpoint is then 0, and its radius follows from |√a −
             // √b| ≤ √|a − b|.
             return Self {
                 mid: T::from_f64(0.0),

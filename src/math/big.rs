@@ -19,7 +19,8 @@ pub(super) type Float = FBig<HalfEven, 2>;
 
 /// Number of bits of a [`Big`]. If a decision is uncertain in [`Double`](super::Double), the
 /// compared numbers agree in about 90 bits. The other 230 bits are far more than the formulas lose
-/// in their intermediate steps. A difference that 320 bits do not resolve is treated as 0.
+/// in their intermediate steps. A difference that cannot be distinguished from 0 with 320 bits is
+/// treated as 0.
 pub(super) const PRECISION: usize = 320;
 
 /// Number of additional bits, beyond [`PRECISION`], in the few steps that subtract nearly equal
@@ -27,8 +28,8 @@ pub(super) const PRECISION: usize = 320;
 const GUARD: usize = 320;
 
 impl Big {
-    /// Number of bits of a [`Big`]. A greater integer is rounded to this many bits, so that it is
-    /// always even.
+    /// Number of bits of a [`Big`]. An integer with more bits is rounded to this number of bits, so
+    /// it is always even.
     pub const BITS: i32 = PRECISION as i32;
 
     /// Rounds `x` to the nearest big number.
@@ -73,8 +74,9 @@ impl Big {
 }
 
 /// Compares an angle with `half_turns` half turns (180° each). If the angle's part in radians is 0,
-/// degrees are compared exactly. Otherwise, π is involved. Since π is irrational, the difference is
-/// never zero, and its sign is determined with 640 bits.
+/// or if its part in degrees is equal to the half turns, the comparison is exact. Otherwise, the
+/// difference contains π, which is irrational, so it is never zero. Its sign is determined with 640
+/// bits.
 pub fn compare_half_turns(angle: Angle, half_turns: f64) -> Ordering {
     let degrees = exact(angle.degrees) - exact(180.0 * half_turns);
     if angle.radians == 0.0 {
@@ -117,7 +119,7 @@ fn wide(x: f64) -> Float {
 /// are exact. Any other number becomes 0.
 pub(super) fn exact(x: f64) -> Float {
     // The numbers of a scene and of sample points are finite. An infinite number or NaN would be a
-    // bug, which must not become a panic in a release build.
+    // bug, but it must not cause a panic in a release build.
     debug_assert!(x.is_finite());
     let x = if x.is_finite() { x } else { 0.0 };
     let float = Float::try_from(x).unwrap_or(Float::ZERO);

@@ -8,8 +8,8 @@ use super::{Big, Real};
 /// The algorithms are Dekker's and Knuth's error-free transformations. Sum and product are the
 /// accurate versions analysed by Joldes, Muller and Popescu, "Tight and rigorous error bounds for
 /// basic building blocks of double-word arithmetic" (2017). Their relative errors are at most 3u²
-/// and 5u², where u = 2^−53. The quotient is a long division, and the root is a step of Newton's
-/// method; each uses a residual in double-double.
+/// and 5u², where u = 2^−53. The quotient is computed by long division, and the root by a step of
+/// Newton's method. Their residuals are computed in double-double.
 ///
 /// The error of a product in `f64` is computed by Dekker's splitting. A fused multiply-add would
 /// give the same result, but is a slow function call on processors without this instruction.
@@ -72,8 +72,8 @@ impl Real for Double {
     /// Maximum relative error of one operation: 2^−102. The quotient has the largest error of all
     /// operations, 10u², where u = 2^−53.
     const UNIT: f64 = 1.0 / (1u128 << 102) as f64;
-    /// Upper bound of the absolute error of an operation that underflows: 2^−1022. The error is
-    /// much smaller in fact: splitting the factors of a product loses at most a few times 2^−1074.
+    /// Upper bound of the absolute error of an operation that underflows: 2^−1022. In fact, the
+    /// error is much smaller: splitting the factors of a product loses at most a few times 2^−1074.
     const TINY: f64 = f64::MIN_POSITIVE;
     const LAST: bool = false;
 

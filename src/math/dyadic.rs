@@ -1,5 +1,5 @@
 //! Dyadic numbers: integers times powers of two. Every `f64` is a dyadic number, and so is every
-//! sum, difference and product of dyadic numbers, so that nothing is rounded.
+//! sum, difference and product of dyadic numbers. These operations are therefore exact.
 //!
 //! Dyadic numbers decide the few questions that must not depend on rounding at all, such as whether
 //! the eye lies in a plane or on a sphere, or whether the up vector is parallel to the view

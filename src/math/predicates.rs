@@ -112,10 +112,10 @@ pub fn box_corners(center: DVec3, size: DVec3) -> (DVec3, DVec3) {
     (corner(-1.0), corner(1.0))
 }
 
-/// Returns `a` + `b`/2, rounded once. Half of a subnormal number may itself need rounding, so (2a +
-/// b)/2 is computed. If the sum 2a + b needs rounding, it is not subnormal, so halving it is exact.
-/// If the sum overflows, a + b/2 is computed instead: b is then either large enough for b/2 to be
-/// exact, or too small to change a.
+/// Returns `a` + `b`/2, rounded once. Computes (2a + b)/2, because half of a subnormal b may need
+/// rounding. Only one of the two steps rounds: if the sum 2a + b needs rounding, it is not
+/// subnormal, and halving it is exact. If the sum overflows, computes a + b/2 instead. In this
+/// case, either b is so large that b/2 is exact, or b is too small to change a.
 fn offset_by_half(a: f64, b: f64) -> f64 {
     let twice = 2.0 * a + b;
     if twice.is_finite() {

@@ -78,9 +78,9 @@ pub struct Wide {
 
 impl Wide {
     /// Maximum difference between the exponents of two summands. If the difference is greater, the
-    /// smaller summand is scaled until its exponent is 1000 less than that of the larger one. The
-    /// error is negligible, since error bounds are enlarged by the factor [`UP`](super::UP) anyway.
-    /// With a greater maximum, the scaled mantissa could underflow.
+    /// smaller summand is enlarged until its exponent is only 1000 less than that of the larger
+    /// summand. The error is negligible, since error bounds are enlarged by the factor
+    /// [`UP`](super::UP) anyway. With a greater maximum, the scaled mantissa could underflow.
     const FAR: i64 = 1000;
 
     /// Returns `mantissa` · 2^`exponent`. The mantissa must not be negative; it need not be between
@@ -180,8 +180,8 @@ impl Radius for Wide {
     }
     fn exponent(self) -> i32 {
         let of_mantissa = i64::from(self.mantissa != 0.0);
-        /// Maximum absolute value of the returned exponent. Any value works that is far beyond the
-        /// exponents of `f64`, but so small that sums of returned exponents do not overflow.
+        /// Maximum absolute value of the returned exponent. It must be far beyond the exponents of
+        /// `f64`, but so small that sums of returned exponents do not overflow.
         const LIMIT: i64 = 1 << 20;
         (self.exponent + of_mantissa).clamp(-LIMIT, LIMIT) as i32
     }

@@ -57,14 +57,14 @@ pub trait Real: Clone + Debug + Sized {
     fn negated(&self) -> Self;
     /// Computes `self` · 2^`exponent`, without rounding unless the result overflows or underflows.
     fn scaled(&self, exponent: i32) -> Self;
-    /// Returns the floor, the greatest integer that is not greater than the number, and whether
-    /// that integer is odd.
+    /// Returns the floor, the greatest integer that is not greater than the number, and whether the
+    /// floor is odd.
     fn floor(&self) -> (Self, bool);
 }
 
-/// Number that rounds an `f64` below 2^51 in absolute value to the nearest integer, if it is added
-/// and then subtracted again. The sum is between 2^52 and 2^53, where neighbouring `f64` differ by
-/// 1, and its last bit shows whether the integer is odd.
+/// Number with which an `f64` below 2^51 in absolute value is rounded to the nearest integer: it is
+/// added and then subtracted again. The sum is between 2^52 and 2^53, where neighbouring `f64`
+/// differ by 1. Its last bit shows whether the integer is odd.
 pub const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
 
 /// Returns the floor of `x`, the greatest integer that is not greater than `x`. Requires |x| <

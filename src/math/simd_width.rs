@@ -4,8 +4,8 @@
 //! which hold two `f64` on x86-64. The few loops that take most of the time are therefore also
 //! compiled for wider vectors of four numbers (AVX2). Loops that gain 10 % from vectors of eight
 //! numbers (AVX-512) are compiled for these, too. At run time, the program detects once which
-//! vectors the processor has. Vectors of any width compute the same bits: IEEE 754 rounds each sum
-//! and each product separately, and nothing here may fuse two operations into one.
+//! vectors the processor has. Vectors of any width give the same bits: IEEE 754 rounds each sum and
+//! each product separately, and the compiler does not fuse a product and a sum into one operation.
 
 /// Choice of the SIMD vectors that a loop uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -10,18 +10,18 @@ use super::{Angle, Ball, Big, Double, Real, double::two_product};
 
 /// Maximum absolute value of an angle's part in radians at which the sine and the cosine are
 /// computed by series in double-double. For larger values, [`Big`] computes them, because its π has
-/// enough digits for any angle. The limit is less than 2^20 quarter turns. So the error from the
-/// truncation of π/2 is at most 2^20·2^−163 = 2^−143, which is negligible beside the unit roundoff
-/// of double-double, 2^−102.
+/// enough digits for any angle. An angle up to the limit has less than 2^20 quarter turns. The
+/// error from the rounding of π/2 is therefore at most 2^20·2^−163 = 2^−143, which is negligible
+/// compared with the unit roundoff of double-double, 2^−102.
 const MAX_RADIANS: f64 = (1u64 << 20) as f64;
 
 /// Number of terms of the series of the sine, and of the series of the cosine. The argument r is at
 /// most 0.8, a little more than π/4. With 15 terms, the first omitted term of the cosine is r³⁰/30!
-/// < 2^−117, and that of the sine, divided by r, is r³⁰/31! < 2^−122.
+/// < 2^−117. The first omitted term of the sine, divided by r, is r³⁰/31! < 2^−122.
 const TERMS: usize = 15;
 /// Maximum truncation error of a series: 2^−116. For the cosine, it is the absolute error. For the
-/// sine, it is the error divided by the series' argument. The terms alternate and decrease, so that
-/// the error is at most the first omitted term, which is less than 2^−117.
+/// sine, it is the error divided by the series' argument. The terms alternate in sign and decrease,
+/// so the error is at most the first omitted term, which is less than 2^−117.
 const TRUNCATION: f64 = 1.0 / (1u128 << 116) as f64;
 
 /// Constants for the reduction of angles modulo quarter turns, and coefficients of the series.
@@ -76,7 +76,7 @@ pub fn sin_cos<T: Real>(angle: Angle) -> (Ball<T>, Ball<T>) {
 
 /// Converts a ball of [`Double`] to a ball of `T` in generic code, where `T` must be [`Double`],
 /// too. The two `f64` of a double-double number are the number rounded to `f64` and the remaining
-/// difference. Adding the two therefore gives the same number again, without rounding.
+/// difference. Adding the two in double-double gives the same number again, without rounding.
 fn from_double<T: Real>(x: &Ball<Double>) -> Ball<T> {
     let [hi, lo, rad] = [x.mid.hi, x.mid.lo, x.rad].map(T::from_f64);
     Ball {
@@ -101,7 +101,8 @@ fn by_series(angle: Angle) -> (Ball<Double>, Ball<Double>) {
 fn sin_cos_degrees(degrees: f64) -> (Ball<Double>, Ball<Double>) {
     let (rest, quarters) = reduce_degrees(degrees);
     if rest == 0.0 {
-        // Most scenes have no other angles. The constants, which take time, are then not computed.
+        // In most scenes, all angles are multiples of 90°. `CONSTANTS` takes time to compute and is
+        // not needed for them.
         return add_quarter_turns((Ball::exact(0.0), Ball::exact(1.0)), quarters);
     }
     let rest = Ball::exact(rest) * &CONSTANTS.radians_per_degree;
@@ -231,8 +232,8 @@ mod tests {
 
     #[test]
     fn angles_far_away_and_the_widest_balls_are_right() {
-        // Both parts of the angle are 45° from a quarter turn, so that the balls of its sine and
-        // cosine are as wide as possible.
+        // Both parts of the angle are about 45° from a multiple of 90°, where the balls of the sine
+        // and the cosine are widest.
         assert!(is_right(-302176.406925716, -675013.4458038831 / 64.0));
         for radians in [1e7, -3e20, MAX_RADIANS, 1e300] {
             assert!(is_right(0.0, radians), "{radians}");

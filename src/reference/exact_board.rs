@@ -25,8 +25,8 @@ pub type Point = [N; 2];
 
 impl ExactBoard {
     /// Returns a board whose linear forms N_a, N_b and L differ from `forms` by rounding errors.
-    /// Each coefficient is multiplied by 1 + k·u, where k is its number in `roundings`, from −1 to
-    /// 1, and u is the unit roundoff of `f64`.
+    /// Each coefficient is multiplied by 1 + k·u, where k is the corresponding entry of
+    /// `roundings`, from −1 to 1, and u is the unit roundoff of `f64`.
     pub fn of_rounded(forms: [[f64; 3]; 3], roundings: [[f64; 3]; 3]) -> Self {
         let [a, b, below] = [0, 1, 2].map(|i| {
             [0, 1, 2].map(|k| {
@@ -66,14 +66,14 @@ impl ExactBoard {
             let polygon = polygon.iter().copied().map(point).collect();
             self.strips(family, polygon, &mut |_, _| count += 1);
         }
-        // In each of the two directions, the lines divide the polygon into one strip more than
-        // there are lines, so 2 is subtracted.
+        // In each of the two directions, n lines divide the polygon into n + 1 strips. The number
+        // of lines is therefore the number of strips minus 2.
         (count - 2).max(1)
     }
 
-    /// Divides the polygon into strips, each between two neighbouring grid lines of the board. Only
-    /// the grid lines on which the coordinate with the index `family` is an integer are used. Calls
-    /// `visit` with each strip, and with the integer of the grid line at the strip's start.
+    /// Divides the polygon into strips along the grid lines on which the board's coordinate with
+    /// the index `family` is an integer. Calls `visit` with each strip, and with the integer of the
+    /// grid line at the strip's start.
     fn strips(&self, family: usize, polygon: Vec<Point>, visit: &mut dyn FnMut(&IBig, Vec<Point>)) {
         let across = &self.across[family];
         let square = |p: &Point| {

@@ -3,7 +3,8 @@
 //!
 //! The report on the arithmetic, the tests and the benchmarks compare the tracer with [`oracle`]
 //! and [`textbook`], on scenes made by [`scenes`]. `grading` imitates students' programs with
-//! [`formulas`]. Nothing of this is shared with the tracer, except what the scene itself provides.
+//! [`formulas`]. The references use none of the tracer's code. Both use the scene and its
+//! functions, such as `level_direction`.
 
 #[cfg(test)]
 pub(crate) mod exact_board;

@@ -2,7 +2,7 @@
 //!
 //! Ray directions have length 1. A ray that is nearly parallel to a triangle misses it. The colour
 //! of a checkerboard's square depends on whether the sum of the square's two indices is even. This
-//! tracer exists only for comparison with others.
+//! tracer exists only to be compared with the real one.
 
 use glam::{DVec2, DVec3};
 

@@ -3,14 +3,14 @@
 //!
 //! A bound adds up the rounding errors of a computation as if each had its greatest possible size
 //! and all had the same sign. With n independent roundings, the actual error is typically smaller
-//! by a factor of √n. So the greatest error of many computations is multiplied by √n. The product
-//! must be at least a hundredth of the bound.
+//! by a factor of √n. For this reason, the greatest error of many computations is multiplied by √n.
+//! The product must be at least a hundredth of the bound.
 
 use std::fmt::Debug;
 
 /// Maximum ratio of an error bound to the greatest error of many computations, after the error is
-/// multiplied by √n for n roundings. Typical errors are smaller than the greatest possible one, so
-/// the ratio cannot be close to 1.
+/// multiplied by √n for n roundings. Typical errors are smaller than the greatest possible error,
+/// so the ratio cannot be close to 1.
 const MOST: f64 = 100.0;
 
 /// Minimum number of errors on which a check of an error bound is based. With too few errors, all

@@ -3,11 +3,11 @@
 //!
 //! A trial draws a random number and succeeds if it is below p. The first binary digit in which the
 //! random number differs from p decides whether it is below. Each digit decides about half of the
-//! trials that are still undecided, and only the number of decided trials has to be drawn. This
-//! number is the number of heads of fair coins, one coin for each undecided trial. For few coins,
-//! random bits are counted. For many coins, the number is drawn by transformed rejection (BTRS of
-//! Hörmann 1993, "The generation of binomial random variates"), which is exact except for the
-//! rounding of `f64`.
+//! trials that are still undecided. Only the number of decided trials has to be drawn. It is
+//! distributed as the number of heads if one fair coin is tossed for each undecided trial. For few
+//! coins, random bits are counted. For many coins, the number of heads is drawn by transformed
+//! rejection (BTRS of Hörmann 1993, "The generation of binomial random variates"), which is exact
+//! except for the rounding of `f64`.
 //!
 //! The binomial distribution of `rand_distr` is not used: it calls the platform's `powf` and `ln`,
 //! whose last bits differ between systems.
@@ -25,7 +25,7 @@ const MAX_COUNTED: u64 = 512;
 pub fn draw(rng: &mut impl Rng, n: u64, part: u64, whole: u64) -> u64 {
     let (mut open, mut successes) = (n, 0);
     // The binary digits of p = part/whole are used one after the other. `rest`/`whole` is the
-    // fraction that the remaining digits form.
+    // fraction with the digits that are not yet used.
     let mut rest = part;
     while open > 0 && rest > 0 {
         let ones = heads(rng, open);

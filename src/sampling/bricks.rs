@@ -110,8 +110,8 @@ impl Bricks {
             return self.n - self.cells_above(self.rows - k);
         }
         let half = self.rows / 2;
-        // There are fewer than 2^27 rows, so that nothing overflows. If there is only one row,
-        // `half` is 0; the divisor is then 1, which does not matter because `k` is 0.
+        // There are fewer than 2^27 rows, so nothing overflows. If there is only one row, `half`
+        // and `k` are 0, and the divisor 1 avoids a division by 0.
         k * self.short + k * self.longer / half.max(1)
     }
 }

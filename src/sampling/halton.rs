@@ -3,17 +3,17 @@
 //!
 //! φ_b(i), the radical inverse, mirrors the digits of i in base b at the radix point. The sequence
 //! begins at i = 0. A shifted point that leaves the pixel enters it again on the other side.
-//! Coordinates are 64-bit fractions. Of the first b^m points, one lies in each interval from k/b^m
-//! to (k + 1)/b^m, perhaps on its lower end. Coordinates are therefore rounded up: a coordinate
-//! rounded down could fall out of the interval.
+//! Coordinates are 64-bit fractions. Exactly one of the first b^m points lies in each interval from
+//! k/b^m to (k + 1)/b^m, possibly on its lower end. Coordinates are therefore rounded up, because
+//! rounding down could move a coordinate out of its interval.
 
 use std::ops::Range;
 
 use super::{lattice, rng::Key};
 
 /// Maximum number of points whose radical inverses (mirrored digits) are stored. For pixels with
-/// more points, they are computed point by point, which takes longer. The stored numbers take 1
-/// MiB; a larger maximum would need more memory.
+/// more points, the inverses are computed point by point, which takes longer. The stored numbers
+/// take 1 MiB; a larger maximum would need more memory.
 const MAX_STORED: u64 = 1 << 16;
 
 /// The Halton sequence, with stored radical inverses (mirrored digits) in base 2 and in base 3.

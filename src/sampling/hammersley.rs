@@ -57,9 +57,10 @@ impl Hammersley {
         }
         let least = self.columns.least();
         let place = scale(within, least);
-        // Every point gets the same place within its column. In a column of `least` places, the
-        // index of this place is `place`. In a column of `least` + 1 places, it is `place` +
-        // `more`, where `more` is 0 or 1.
+        // All points get the same position within their columns. A column has `least` or `least` +
+        // 1 possible positions. In a column with `least` positions, the chosen one has the index
+        // `place`. In a column with `least` + 1 positions, it has the index `place` + `more`, where
+        // `more` is 0 or 1.
         let more = scale(within, least + 1) - place;
         let turned = &self.turned[(columns + range.start) as usize..];
         for (x, column) in x.iter_mut().zip(turned) {

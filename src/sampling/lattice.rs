@@ -1,5 +1,5 @@
-//! The possible values of a random offset from a pixel's centre, and strata, which are equal
-//! intervals of these values.
+//! The possible values of a random offset from a pixel's centre, and their division into strata,
+//! which are equal intervals.
 //!
 //! Random offsets are the 2^53 odd multiples of 2^−54 between −1/2 and 1/2. Each of them is an
 //! `f64`, and none lies on a pixel's edge or on its centre line. They are symmetric about 0, so
@@ -41,9 +41,9 @@ pub fn offset_of_bits(bits: u64) -> f64 {
     offset(bits >> 11)
 }
 
-/// The 2^53 possible offsets along a pixel's width or height, divided into n strata whose numbers
-/// of offsets differ by at most 1; 1 ≤ n ≤ 2^53. An offset is represented by its place, i.e. its
-/// index among all offsets.
+/// The 2^53 possible offsets along a pixel's width or height, divided into n strata (intervals), 1
+/// ≤ n ≤ 2^53. The numbers of offsets in two strata differ by at most 1. An offset is represented
+/// by its place, i.e. its index among all offsets.
 #[derive(Debug)]
 pub struct Strata {
     n: u64,
@@ -54,8 +54,8 @@ pub struct Strata {
     stored: Vec<Stratum>,
 }
 
-/// One of n strata, i.e. of n intervals into which the 2^53 possible places along a pixel's side
-/// are divided. Each has ⌊2^53/n⌋ places or one more. It is stored as one number: twice its first
+/// One of the n strata (intervals) into which the 2^53 possible places along a pixel's side are
+/// divided. A stratum has ⌊2^53/n⌋ places or one more. It is stored as one number: twice its first
 /// place, plus 1 if it has one place more.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stratum(u64);
@@ -74,8 +74,8 @@ impl Stratum {
         self.0 & 1
     }
 
-    /// Returns the stratum's bits as a floating-point number, which stands for no quantity. A list
-    /// of offsets can so store strata until an offset is chosen in each of them.
+    /// Returns the stratum's bits as a floating-point number, whose value has no meaning. A list of
+    /// offsets can store strata in this form until an offset is chosen in each stratum.
     #[inline(always)]
     pub fn to_f64(self) -> f64 {
         f64::from_bits(self.0)
@@ -132,8 +132,9 @@ impl Strata {
     pub fn choose_all(&self, strata: &mut [f64], random: impl Iterator<Item = u64>) {
         let chosen = strata.iter_mut().zip(random);
         if self.n.is_power_of_two() {
-            // All strata have 2^53/n places, so the highest bits are the place. The shift is done
-            // in two parts, because a single shift by 64 bits, for n = 2^53, would overflow.
+            // All strata have 2^53/n places, a power of two. The highest bits of the random number
+            // are therefore the place within the stratum. They are shifted in two steps, because a
+            // single shift by 64 bits, for n = 2^53, would overflow.
             let unused = u64::BITS - 1 - self.least.ilog2();
             for (out, bits) in chosen {
                 *out = offset(Stratum::from_f64(*out).start() + (bits >> 1 >> unused));
@@ -154,8 +155,8 @@ impl Strata {
     }
 }
 
-/// Computes the stratum with the index `i` if a pixel's side has `n` strata. The index `n` gives
-/// the stratum that would follow the last.
+/// Computes the stratum with the index `i` if a pixel's side has `n` strata. The index `n` gives a
+/// stratum that starts at the end of the last one.
 fn stratum(i: u64, n: u64) -> Stratum {
     let more = start(i + 1, n) - start(i, n) - PLACES / n;
     Stratum(2 * start(i, n) + more)

@@ -98,8 +98,8 @@ impl Sampling {
     ///
     /// Panics if the picture has no pixels.
     pub fn new(sampler: &Sampler, width: u32, height: u32) -> Self {
-        // The key depends on the method's position in the enum `Method`. So the positions must not
-        // change, because all sampled pictures would change with them.
+        // The key depends on the method's position in the enum `Method`. If the positions changed,
+        // all sampled pictures would change.
         let key = Key::new(sampler.seed, sampler.method as u64);
         let pixels = u64::from(width) * u64::from(height);
         let total = match sampler.count {
@@ -160,8 +160,8 @@ impl Sampling {
         match self.same_count() {
             Some(count) => vec![count; part.pixels() as usize],
             None if self.method == Method::Scatter => {
-                // The key must differ from the keys of all pixels. No pixel has the number
-                // `u64::MAX`, so this number is used.
+                // The key must differ from the keys of all pixels (`Self::place`). It is derived
+                // from `u64::MAX`, which is not the number of any pixel.
                 let key = self.key.part(u64::MAX);
                 scatter::counts(key, self.total, self.picture, part)
             }
@@ -174,8 +174,8 @@ impl Sampling {
     /// 1)·N/P⌋ − ⌊i·N/P⌋ samples.
     fn even_count(&self, x: u32, y: u32) -> u64 {
         // Let P be the number of pixels. The picture has count·P + extra samples, so each pixel has
-        // either `count` samples or one more. A pixel has one more if i·extra modulo P is at least
-        // P − extra, where i is its position on the Hilbert curve.
+        // `count` or `count` + 1 samples. The pixel at position i of the Hilbert curve has `count`
+        // + 1 samples if i·extra modulo P is at least P − extra.
         let (extra, pixels) = (u128::from(self.extra), u128::from(self.picture.pixels()));
         let remainder = u128::from(hilbert::rank(self.picture, x, y)) * extra % pixels;
         self.count + u64::from(remainder + extra >= pixels)

@@ -7,8 +7,9 @@
 //! For n = a·b points, the grid has a columns and b rows, where b is the greatest divisor of n up
 //! to √n. The point of the cell in column i and row j lies in column i·b + σ(j) of the n columns,
 //! and in row j·a + τ(i) of the n rows. Here σ is a random permutation of the b rows, and τ is a
-//! random permutation of the a columns. Kensler's method uses the same σ and τ in the whole pixel,
-//! unlike the method of Chiu, Shirley and Wang (1994), on which it is based. If n is prime, b is 1.
+//! random permutation of the a columns. Kensler's method uses the same σ and τ in the whole pixel.
+//! The older method of Chiu, Shirley and Wang (1994) draws new permutations for each row and column
+//! of the grid. If n is prime, b is 1.
 
 use std::ops::Range;
 
@@ -25,8 +26,9 @@ pub struct MultiJittered {
     rows: u64,
     /// Division of the pixel's width into n equal intervals. The height is divided in the same way.
     strata: Strata,
-    /// The pixel's n columns in another order: first the first of each column of the grid, then the
-    /// second of each, and so on. Empty if there are too many columns to be stored.
+    /// The pixel's n columns in another order. Each column of the grid consists of several of them.
+    /// The list contains the first of each grid column, then the second of each, and so on. Empty
+    /// if there are too many columns to be stored.
     cell_columns: Vec<Stratum>,
 }
 
@@ -69,8 +71,8 @@ impl MultiJittered {
         let sigma = Shuffle::new(self.rows, key.part(0), sigma);
         let tau = Shuffle::new(self.columns, key.part(1), tau);
         // First, a column and a row are assigned to each point, one row of the grid after the
-        // other. The lists of coordinates store them until the place in the column or row is
-        // chosen: a buffer would have to be cleared.
+        // other. They are stored in the lists of coordinates until the positions within them are
+        // chosen. A separate buffer would have to be cleared first, which takes time.
         let (mut i, mut j) = (range.start % self.columns, range.start / self.columns);
         let (mut columns, mut rows) = (&mut *x, &mut *y);
         while !columns.is_empty() {
@@ -81,8 +83,8 @@ impl MultiJittered {
             (columns, rows) = (column_rest, row_rest);
             (i, j) = (0, j + 1);
         }
-        // After the columns and rows of the points are known, a random place is chosen in each
-        // column and row, in loops that the compiler can vectorize.
+        // Then a random position within each point's column and row is chosen, in a loop of its own
+        // that the compiler can vectorize.
         for (axis, out) in [(0, x), (1, y)] {
             self.strata
                 .choose_all(out, key.series(2 * range.start + axis, 2));
@@ -130,7 +132,8 @@ mod tests {
             {
                 let key = Key::new(seed, 5).part(seed);
                 let (mut x, mut y) = (vec![0.0; n as usize], vec![0.0; n as usize]);
-                // Two calls place all points, also if the first ends within a row of the grid.
+                // The points are placed by two calls. The first call may end within a row of the
+                // grid.
                 let split = n * 2 / 5;
                 let (first, second) = (split as usize, n as usize);
                 grid.place(key, 0..split, [&mut x[..first], &mut y[..first]]);

@@ -21,9 +21,9 @@ pub fn place(bricks: &Bricks, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
     }
 }
 
-/// Returns the middle of several neighbouring parts of a pixel's side, as an offset from the
-/// pixel's centre. The side is divided into `n` equal parts, of which `parts` are used, beginning
-/// with the index `first`.
+/// Returns the middle of an interval of a pixel's side, as an offset from the pixel's centre. The
+/// side is divided into `n` equal parts. The interval consists of `parts` of them and begins with
+/// the part with the index `first`.
 fn middle(first: u64, parts: u64, n: u64) -> f64 {
     // The numerator is at most 2^53, so it is exact, and only the division rounds.
     (2 * first as i64 + parts as i64 - n as i64) as f64 / (2 * n) as f64

@@ -2,9 +2,9 @@
 //!
 //! A [`Key`] stands for one use of random numbers (a seed, a method, a pixel, an axis), and
 //! `key.bits(i)` is the i-th 64-bit number for this use. The generator is SplitMix64 (Steele, Lea
-//! and Flood 2014, "Fast splittable pseudorandom number generators") with its state computed
-//! instead of stored. [`CounterRng`] returns the numbers of a key in turn, as a generator of the
-//! crate `rand`.
+//! and Flood 2014, "Fast splittable pseudorandom number generators"), but its state is computed
+//! from i instead of stored. [`CounterRng`] returns the numbers of a key one after the other, as a
+//! generator of the crate `rand`.
 
 use std::{convert::Infallible, iter, ops::Range};
 
@@ -43,8 +43,9 @@ impl Key {
     }
 
     /// Returns the random numbers with the indices `first`, `first` + `step` and so on, without
-    /// end. They take less time than by [`bits`](Self::bits), because indices are added up instead
-    /// of multiplied, and few processors can multiply vectors of 64-bit numbers.
+    /// end. This takes less time than calling [`bits`](Self::bits) for each index, because it needs
+    /// an addition instead of a multiplication per number. Few processors can multiply vectors of
+    /// 64-bit numbers.
     #[inline(always)]
     pub fn series(self, first: u64, step: u64) -> impl Iterator<Item = u64> {
         let mut state = self
@@ -129,23 +130,23 @@ pub fn scale(bits: u64, n: u64) -> u64 {
 /// Computes the same as [`scale`], for `n` ≤ 2^53, by operations that compilers can vectorize.
 ///
 /// `n` is split at bit 26. If both factors were split into halves of 32 bits, compilers would
-/// recognise a 128-bit product, for which there are no vector instructions.
+/// replace the code by a 128-bit product, and there are no vector instructions for such products.
 #[inline(always)]
 pub fn scale_by_parts(bits: u64, n: u64) -> u64 {
     const LOW: u64 = u32::MAX as u64;
     let (high, low) = (bits >> 32, bits & LOW);
     let (n_high, n_low) = (n >> 26 & LOW, n & ((1 << 26) - 1));
     // The product `bits`·`n` is high·n_high·2^58 + high·n_low·2^32 + low·n_high·2^26 + low·n_low.
-    // None of these four products of parts exceeds 2^59. The sum is divided by 2^64 in steps, each
-    // of which rounds down. This gives the same result as rounding down once, because only whole
-    // numbers are added between the steps.
+    // None of these four products of parts exceeds 2^59. The sum is divided by 2^64 in several
+    // steps, and every step rounds down. This gives the same result as rounding down once, because
+    // only whole numbers are added between the steps.
     let rest = low * n_high + ((low * n_low) >> 26);
     let rest = high * n_low + (rest >> 6);
     (high * n_high + (rest >> 26)) >> 6
 }
 
-/// Mixes the bits of a number: the last step of SplitMix64 (Stafford's "Mix13"). Different numbers
-/// have different results.
+/// Mixes the bits of a number. This is the last step of SplitMix64 (Stafford's "Mix13"). Different
+/// numbers give different results.
 #[inline(always)]
 fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -6,9 +6,9 @@
 //! between the two children. This gives the numbers of points in all pixels their multinomial
 //! distribution.
 //!
-//! The longer side of a rectangle is cut (the width, if both are equal), at the greatest power of
-//! two below its length. Nearly all cuts are therefore into equal halves. A draw for equal halves
-//! only counts random bits. Within its pixel, a point is uniform.
+//! The longer side of a rectangle is cut at the greatest power of two below its length. If both
+//! sides are equal, the width is cut. Nearly all cuts therefore produce equal halves, for which a
+//! binomial draw only counts random bits. Within its pixel, a point is uniform.
 
 use super::{binomial, rng::Key};
 use crate::area::Area;

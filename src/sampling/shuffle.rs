@@ -88,11 +88,10 @@ fn fisher_yates(entries: &mut [u16], key: Key) {
     }
 }
 
-/// Computes a single entry of a permutation of 0 … n − 1. The numbers with as many bits as n − 1
-/// are permuted by a function that depends on the key. This function is applied again until the
-/// result is below n ("cycle walking", Black and Rogaway 2002), which gives a permutation of the
-/// numbers below n. At least half of all numbers are below n, so the mean number of steps is at
-/// most two.
+/// Computes a single entry of a permutation of 0 … n − 1. A function that depends on the key
+/// permutes all numbers with as many bits as n − 1. It is applied again until the result is below n
+/// ("cycle walking", Black and Rogaway 2002). This gives a permutation of the numbers below n. At
+/// least half of all permuted numbers are below n, so the mean number of steps is at most two.
 fn permute(index: u64, n: u64, key: Key) -> u64 {
     let bits = u64::BITS - (n - 1).leading_zeros();
     let mask = (1 << bits) - 1;

@@ -7,14 +7,15 @@
 //! lies in every aligned rectangle of width 2^−a and height 2^(a−m), for each a from 0 to m. The
 //! same holds for every further block of 2^m points.
 //!
-//! Owen's scrambling flips some bits of each coordinate. A random bit decides whether a bit is
-//! flipped; there is one random bit for each combination of all higher bits. These combinations are
-//! the nodes of a binary tree. In a pixel with n points, no two points agree in the first m = ⌈log₂
-//! n⌉ bits of a coordinate. Below these m levels, every subtree therefore contains at most one
-//! point, and the point's further bits are simply independent random bits. The result is the true
-//! scrambling, with m decisions per coordinate instead of 53. One 64-bit hash decides six levels of
-//! the tree. The scrambling of Laine and Karras by multiplications was not tried: it is known to
-//! have weak bits, and it would save no time for the numbers of points that pictures use.
+//! Owen's scrambling flips some bits of each coordinate. Whether a bit is flipped depends on a
+//! random bit, and there is a separate random bit for each combination of all higher bits. These
+//! combinations are the nodes of a binary tree. In a pixel with n points, no two points agree in
+//! the first m = ⌈log₂ n⌉ bits of a coordinate. Below these m levels, every subtree therefore
+//! contains at most one point, and the point's further bits are simply independent random bits. The
+//! result is the true scrambling, with m decisions per coordinate instead of 53. One 64-bit hash
+//! decides six levels of the tree. The scrambling of Laine and Karras by multiplications was not
+//! tried: it is known to have weak bits, and it would save no time for the numbers of points that
+//! pictures use.
 
 use std::ops::Range;
 
@@ -27,9 +28,9 @@ const LEVELS: u32 = 6;
 /// Number of levels of the tree that are looked up at a time, in [`SCRAMBLED`].
 const BLOCK: u32 = 3;
 
-/// Maximum number of points whose bits before the scrambling are stored. Any two of these points
-/// differ in one of their first 12 bits, so that two hashes, of six levels each, scramble a point.
-/// For more points, the bits are computed point by point.
+/// Maximum number of points whose bits before the scrambling are stored. The first 12 bits
+/// distinguish all of these points, so two hashes, of six levels each, are enough to scramble a
+/// point. For more points, the bits are computed point by point.
 const MAX_STORED: u64 = 1 << (2 * LEVELS);
 
 /// The first points of the Sobol' sequence, prepared for scrambling.
@@ -96,8 +97,8 @@ fn second(i: u64) -> u64 {
     pascal(i).reverse_bits()
 }
 
-/// Multiplies the bits of a number by Pascal's triangle modulo 2: bit j of the result is the sum,
-/// over all k, of the binomial coefficient "k choose j" times bit k, modulo 2. The coefficient is
+/// Multiplies the bits of a number by Pascal's triangle modulo 2. Bit j of the result is the sum
+/// over all k of bit k times the binomial coefficient "k choose j", modulo 2. The coefficient is
 /// odd if all bits of j are also set in k. The positions j and k, from 0 to 63, have six bits, so
 /// six steps are enough: one for each of these bits.
 fn pascal(mut bits: u64) -> u64 {
@@ -134,21 +135,23 @@ impl Owen {
     }
 
     /// Writes the offsets of points to `out`. `tops` contains the `depth` highest bits of each
-    /// point's coordinate, before the scrambling. There are at most `MOST` combinations of these
-    /// bits, and at most 12 bits, so that two hashes suffice for each combination.
+    /// point's coordinate, before the scrambling. `depth` must be at most 12, so that two hashes
+    /// are enough for each combination of these bits. `MOST` must be at least the number of
+    /// combinations.
     #[inline(always)]
     fn place<const MOST: usize>(&self, tops: &[u16], out: &mut [f64]) {
         let mut scrambled = [0; MOST];
         self.scramble_all(&mut scrambled);
-        // Looking up is a loop of its own, so that the compiler vectorizes the other one. `out`
-        // stores the numbers from one loop to the other, because clearing a buffer would take time.
+        // The scrambled bits are looked up in a loop of their own, so that the compiler vectorizes
+        // the second loop. They are stored in `out` between the two loops, because clearing a
+        // separate buffer would take time.
         for (out, &top) in out.iter_mut().zip(tops) {
             *out = f64::from_bits(u64::from(scrambled[usize::from(top)]));
         }
         for (out, &top) in out.iter_mut().zip(tops) {
             let hash = self.key.bits(1 << self.depth | u64::from(top));
-            // The shift is done in two parts, because a single shift by 64 bits, for depth 0, would
-            // overflow.
+            // The bits are shifted in two steps, because a single shift by 64 bits, for depth 0,
+            // would overflow.
             let top = out.to_bits() << 1 << (u64::BITS - 1 - self.depth);
             *out = lattice::offset_of_bits(top | hash >> self.depth);
         }
@@ -189,18 +192,18 @@ impl Owen {
             flips = self.key.bits(node);
             above = below;
         }
-        // No other point agrees with this one in the `depth` highest bits, so the last hash gives
-        // all remaining bits.
+        // No other point has the same `depth` highest bits, so the remaining bits are simply those
+        // of the last hash.
         scrambled << (u64::BITS - self.depth) | flips >> self.depth
     }
 }
 
-/// Writes the scrambled value of each combination of `levels` bits, at most six, to `out`, with the
-/// bits of `above` before it. Always writes whole blocks of eight, so that numbers after the last
-/// combination may change. A combination is a path from the root of a binary tree to a leaf.
-/// `flips` contains a random bit for each inner node of the tree: bit 1 for the root, bits 2 and 3
-/// for its children, and so on. If a node's bit is set, the bit of the path at this node is
-/// flipped.
+/// Writes the scrambled value of each combination of `levels` bits, at most six, to `out`, after
+/// the higher bits `above`. Always writes whole blocks of eight numbers, so entries of `out` after
+/// the last combination may be overwritten. A combination of bits is a path from the root of a
+/// binary tree to a leaf. `flips` contains a random bit for each inner node of the tree: bit 1 for
+/// the root, bits 2 and 3 for its children, and so on. If a node's bit is set, the bit of the path
+/// at this node is flipped.
 #[inline(always)]
 fn subtree(flips: u64, levels: u32, above: u16, out: &mut [u16]) {
     let top_levels = levels.saturating_sub(BLOCK);
@@ -208,8 +211,8 @@ fn subtree(flips: u64, levels: u32, above: u16, out: &mut [u16]) {
     let bottoms = &SCRAMBLED[(levels - top_levels) as usize];
     let blocks = out.chunks_exact_mut(1 << BLOCK).zip(tops);
     for (part, (out, &top)) in (0..1_u32 << top_levels).zip(blocks) {
-        // The random bits of a block's seven nodes lie in three places, one for each level: nodes
-        // on the same level follow each other.
+        // `flips` contains the random bits of the tree level by level. The random bits of a block's
+        // seven nodes are therefore in three separate groups, one for each level.
         let level = |depth: u32| {
             let nodes = 1_u32 << depth;
             flips >> ((nodes << top_levels) + (part << depth)) & ((1 << nodes) - 1)
@@ -221,9 +224,9 @@ fn subtree(flips: u64, levels: u32, above: u16, out: &mut [u16]) {
     }
 }
 
-/// Scrambled values of all combinations of up to three bits, a block of eight numbers for each way
-/// to scramble them. The indices are the number of bits and the random bits of the tree's nodes:
-/// bit 0 for the root, bits 1 and 2 for its children, and so on.
+/// Scrambled values of all combinations of up to three bits. The first index is the number of bits.
+/// The second index consists of the random bits of the tree's nodes: bit 0 for the root, bits 1 and
+/// 2 for its children, and so on. The entry contains the scrambled value of each combination.
 static SCRAMBLED: [[[u16; 1 << BLOCK]; 128]; BLOCK as usize + 1] = {
     let mut scrambled = [[[0; 1 << BLOCK]; 128]; BLOCK as usize + 1];
     let mut levels = 1;

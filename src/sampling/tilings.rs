@@ -1,9 +1,9 @@
 //! Divisions of a pixel into n cells such that a sampling method guarantees one sample in each
 //! cell.
 //!
-//! In: a method and the number n of a pixel's samples. Out: the divisions for which this is
-//! guaranteed with every seed and in every pixel. They follow from the methods' own files. For
-//! example, `bricks` defines the cells of regular and jittered samples.
+//! In: a method and the number n of a pixel's samples. Out: the divisions in which each cell
+//! contains one sample, in every pixel and with every seed. They follow from the methods' own
+//! files. For example, `bricks` defines the cells of regular and jittered samples.
 
 use super::{bricks::Bricks, multi_jittered::MultiJittered};
 use crate::scene::Method;
@@ -37,7 +37,7 @@ impl Tiling {
 }
 
 /// Returns the divisions of a pixel with `n` samples in which a method guarantees one sample per
-/// cell. The divisions into n columns and into n rows, if they are returned, come last. Returns no
+/// cell. If the divisions into n columns or into n rows are among them, they come last. Returns no
 /// divisions if `n` is 0.
 pub fn tilings(method: Method, n: u64) -> Vec<Tiling> {
     if n == 0 {

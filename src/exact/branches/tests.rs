@@ -56,8 +56,8 @@ impl ExactBranch {
 
     /// Returns how far y(x) may move if the conic's equation has an error of eight roundings in
     /// double-double. The distance is large only if Δ ([`ConicGraph`]) is nearly 0 at `x`. The
-    /// error bound of a section does not cover this movement, because the error bound of the conic
-    /// does.
+    /// error bound of a section does not cover this movement; the error bound of the conic covers
+    /// it.
     fn doubt(&self, x: f64) -> f64 {
         let c = self.factors[2].to_f64().value().abs();
         let root = self.root(&NUMBER.exact(x)).to_f64().value();
@@ -81,7 +81,8 @@ impl ExactBranch {
         let determinant = p * r - q * q;
         let inverse = if *p > N::ZERO {
             let steepness = p.sqrt();
-            // Beyond the branch's end, Δ is negative, and the integral stays as it is at the end.
+            // Beyond the branch's end, Δ is negative and counts as 0, so the integral keeps the
+            // value that it has at the end.
             let sum = if root == N::ZERO {
                 (-&determinant).sqrt()
             } else {
@@ -233,7 +234,7 @@ fn errors_of_sections_are_within_tight_bounds() {
 }
 
 /// In each case, two conics nearly coincide. The bound on the distance between their arcs is
-/// compared with the exact distance at nine places.
+/// compared with the exact distance at nine values of x.
 #[test]
 fn distances_of_parallel_arcs_are_tight() {
     let found = RefCell::new(Tightness::default());

@@ -1,13 +1,13 @@
 //! Batches of eight pixels that show only a checkerboard and are crossed by few of its lines. Most
-//! pixels of more than one colour are of this kind.
+//! pixels with more than one colour are of this kind.
 //!
-//! In: such pixels one by one, in any order. Each comes with the column and row numbers of the
-//! squares that its corners show. Out: the integral of the board's sign (1 on squares of one
-//! colour, −1 on the others) over each pixel. A board has two families of lines, those between
-//! columns and those between rows of squares. All pixels of a batch are crossed by the same numbers
-//! of lines of the two families. When a batch has eight pixels, `strips_simd` computes them at once
-//! and bounds the errors. The result for a pixel depends neither on the other pixels of its batch
-//! nor on the part of the picture that is rendered.
+//! In: pixels one by one, in any order, each with the column and row numbers of the squares that
+//! its corners show. Out: the integral of the board's sign (1 on squares of one colour, −1 on the
+//! others) over each pixel. A board has two families of lines, those between columns and those
+//! between rows of squares. All pixels of a batch are crossed by the same numbers of lines of the
+//! two families. When a batch has eight pixels, `strips_simd` computes them at once and bounds the
+//! errors. The result for a pixel depends neither on the other pixels of its batch nor on the part
+//! of the picture that is rendered.
 
 use super::{
     homography::BoundedSum,
@@ -58,9 +58,10 @@ impl BoardBatches {
         }
     }
 
-    /// Adds a pixel to the queue of its batch. If the batch is then full, computes it and calls
-    /// `emit` for each of its pixels, with the area of the board's first colour minus that of the
-    /// second. If too many lines cross the pixel, calls `emit` at once, without a result.
+    /// Adds a pixel to the batch of pixels that equally many lines cross. If the batch is then
+    /// full, computes it and calls `emit` for each of its pixels, with the area of the board's
+    /// first colour minus that of the second. If too many lines cross the pixel, calls `emit` at
+    /// once, without a result.
     pub fn push(
         &mut self,
         pixel: BoardPixel,
@@ -96,7 +97,7 @@ impl BoardBatches {
 }
 
 impl Batch {
-    /// Computes and empties the queue. Calls `emit` for each pixel, with the area of the board's
+    /// Computes and empties this batch. Calls `emit` for each pixel, with the area of the board's
     /// first colour minus that of the second. `crossing` contains the number of crossed lines in
     /// each of the board's two families, which is the same for all pixels. The smaller number comes
     /// first.

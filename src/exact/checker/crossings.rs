@@ -1,8 +1,8 @@
 //! The lines that one edge of a polygon crosses, and the direct sum over these crossings.
 //!
 //! By Green's theorem ([`green`](super::green)), the integral of a board's sign over a polygon is a
-//! sum over the points where the polygon's edges cross lines of the board. What an edge contributes
-//! at each point is a function X, given as a truncated series.
+//! sum over the points where the polygon's edges cross lines of the board. The contribution of a
+//! point is the value of a function X there, which is given as a truncated series ([`EdgeSeries`]).
 //!
 //! In: the function X of an edge, and the point where the edge crosses its first line. Out: the
 //! alternating sum Σ (−1)^j·X over the crossings j, with a bound on truncation and rounding errors.
@@ -22,16 +22,15 @@ use multiversion::multiversion;
 /// the omitted terms is then proportional to 22!/2·(18π)⁻²⁰, about 5e-15. Fewer terms would make
 /// this factor larger.
 pub(super) const MAX_TERMS: usize = 20;
-/// Upper limit on the number of blocks into which the sum over an edge's crossings is divided. The
-/// truncation error of each block is limited to the tolerance divided by this number, so that the
-/// error of all blocks together is within the tolerance. The longest sum has 300,000 crossings:
-/// about 15 blocks that grow up to `MAX_BLOCK` crossings, and about 74 blocks of `MAX_BLOCK`
-/// crossings.
+/// Upper limit on the number of blocks into which the sum over an edge's crossings is divided. Each
+/// block may have a truncation error of the tolerance divided by this number. The error of all
+/// blocks together is then within the tolerance. The longest sum has 300,000 crossings: about 15
+/// blocks that grow up to `MAX_BLOCK` crossings, and about 74 blocks of `MAX_BLOCK` crossings.
 const MAX_BLOCKS: f64 = 128.0;
 
-/// Minimum number of crossings in a block of the sum over an edge's crossings. With this many,
-/// choosing the block's number of terms is a small part of the work. Not critical: with 4 or 64,
-/// the measured running time changes by at most about 10 %.
+/// Minimum number of crossings in a block of the sum over an edge's crossings. In a block of 16
+/// crossings, choosing the number of terms is only a small part of the work. Not critical: with 4
+/// or 64, the measured running time changes by at most about 10 %.
 const MIN_BLOCK: f64 = 16.0;
 /// Maximum number of crossings in a block of the sum over an edge's crossings, which limits the
 /// rounding error of the block. Not critical: with 1024 or 16,384, the measured running time
@@ -40,12 +39,12 @@ const MAX_BLOCK: f64 = 4096.0;
 
 /// Number of running sums in which the alternating terms of an edge's crossings are added: crossing
 /// j goes to sum j mod `LANES`. The compiler vectorises the loop, and the widest vectors hold eight
-/// `f64`. The number is even, so that the signs (−1)^j of all terms in one running sum are equal.
+/// `f64`. Because the number is even, all terms in one running sum have the same sign (−1)^j.
 const LANES: usize = 8;
 /// Number of crossings of an edge after which the position along the edge is computed anew in
 /// double-double. In between, the position advances in `f64`, with an error that grows with the
-/// number of steps. A larger number would make the error larger; a smaller one would use the slow
-/// double-double more often.
+/// number of steps. A larger number would make the error larger; a smaller number would require the
+/// slow double-double more often.
 const CHUNK: usize = 64;
 
 /// A truncated series X, a function of the position along an edge of a polygon. Added up with
@@ -151,10 +150,10 @@ impl LineCrossings {
             // The rounding errors, in unit roundoffs, consist of three parts. First, the coordinate
             // t has an error of at most 2, plus 3 for each crossing since t was last computed in
             // double-double. The mean of this error over the block is at most 4·`reach`. The slope
-            // of X is at most π times the bound `series.size` of X, so an error of t causes at most
-            // π times as large an error of X, relative to this bound. Second, a term of X is
-            // computed with 14 roundings, derived in `green`. Third, each number added to one of
-            // the `LANES` running sums adds one rounding.
+            // of X is at most π·`series.size`, so an error of t causes an error of X of at most
+            // π·`series.size` times the error of t. Second, X is computed with 14 roundings
+            // (derived in `green`). Third, each number that is added to one of the `LANES` running
+            // sums adds one rounding.
             let reach = 2.0 + 0.5 * count.min(CHUNK as f64);
             let added = count / LANES as f64 + 4.0;
             let rounding = UNIT * series.size(1, depth) * (added + 16.0 + 4.0 * PI * reach);
@@ -176,8 +175,8 @@ impl LineCrossings {
         let mut j = done;
         while left > 0 {
             let now = left.min(CHUNK);
-            // The compiler vectorises this loop only if it runs over whole vectors. So up to
-            // `LANES` − 1 values too many are computed, and then set to 0.
+            // The compiler vectorises this loop only if the number of values is a multiple of
+            // `LANES`. Up to `LANES` − 1 surplus values are therefore computed, and then set to 0.
             let mut values = [0.0; CHUNK];
             let filled = now.next_multiple_of(LANES);
             let t = self.reduced_at(&Double::from_f64(j)).hi;
@@ -231,10 +230,10 @@ impl LineCrossings {
     }
 }
 
-/// Computes the alternating sum Σ (−1)^j·X over `count` consecutive crossings of an edge. At the
-/// first of them, j = 0; before it, the edge has `done` other crossings. X is the edge's
-/// contribution at a crossing, given by `series`. Its first `terms` terms are added up, or some
-/// more if there is no variant of this function for this number of terms.
+/// Computes the alternating sum Σ (−1)^j·X over `count` consecutive crossings of an edge. j is 0 at
+/// the first of them; the edge has `done` other crossings before it. `series` gives X, the edge's
+/// contribution at a crossing, truncated after `terms` terms. `terms` is rounded up to a number of
+/// terms for which the loop is compiled.
 #[multiversion(targets(
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",

@@ -62,9 +62,9 @@ use std::f64::consts::PI;
 const TRUNCATION: f64 = 1e-3;
 
 /// Maximum truncation error of the sum over the lines that one edge crosses, as a fraction of the
-/// pixel's tolerance. It holds for an edge that ends before the horizon, in a polygon that reaches
-/// the horizon. Edges that end on the horizon get the larger fraction [`ENDLESS_TAIL`], because
-/// they cross infinitely many lines.
+/// pixel's tolerance. It applies to edges that do not reach the horizon, in a polygon that does.
+/// Edges that end on the horizon get the larger fraction [`ENDLESS_TAIL`], because they cross
+/// infinitely many lines.
 ///
 /// A polygon has noticeable errors on at most two edges that end before the horizon and two that
 /// end on it. Together they are at most 2·(1/9 + 8/9), twice the tolerance. The area of a colour is
@@ -72,17 +72,17 @@ const TRUNCATION: f64 = 1e-3;
 /// tolerance.
 const FINITE_TAIL: f64 = 1.0 / 9.0;
 /// Maximum truncation error of the sum over the lines that one edge crosses, as a fraction of the
-/// pixel's tolerance. It holds for an edge that ends on the horizon. Other edges of the polygon get
-/// the rest, 1/9 ([`FINITE_TAIL`]).
+/// pixel's tolerance. It applies to edges that end on the horizon. Other edges of the same polygon
+/// get only 1/9 ([`FINITE_TAIL`]).
 const ENDLESS_TAIL: f64 = 8.0 / 9.0;
 /// Maximum truncation error of the sum over the lines that one edge crosses, as a fraction of the
 /// pixel's tolerance, if no edge of the polygon reaches the horizon. It is the whole tolerance,
-/// because only the two edges that recede from the eye have long sums; the sums over other edges
-/// hardly contribute.
+/// because only the two edges that recede from the eye have long sums with noticeable truncation
+/// errors.
 const ONLY_FINITE_TAIL: f64 = 1.0;
 /// Minimum share of the pixel's tolerance that a polygon gets for its truncated sums. The share is
-/// the polygon's area, in square pixels, if this is greater. With a smaller minimum, the sums over
-/// tiny polygons would become long. With a larger one, the errors of many tiny polygons could
+/// the polygon's area, in square pixels, if this is greater. With a smaller minimum, the sums for
+/// tiny polygons would become long. With a larger minimum, the errors of many tiny polygons could
 /// exceed the tolerance.
 const MIN_SHARE: f64 = 1.0 / 64.0;
 
@@ -102,7 +102,7 @@ pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
 
 /// Integrates the board's sign (1 on squares of one colour, −1 on the others) over a convex polygon
 /// in which the depth changes little from square to square. The polygon may reach the horizon.
-/// `visible` is the larger polygon of which this one is a part; the floor is seen in all of it.
+/// `visible` is a larger polygon that contains this one and shows only the floor.
 pub(super) fn sum(
     board: &Homography,
     polygon: &[DVec2],
@@ -112,8 +112,8 @@ pub(super) fn sum(
     let (area, _) = measure(polygon);
     let corner = |&at: &DVec2| board.corner(at, visible);
     let corners: Vec<Corner> = polygon.iter().map(corner).collect();
-    // The polygons of a pixel divide its tolerance in proportion to their areas, but each gets at
-    // least the fraction `MIN_SHARE`. The limits `FINITE_TAIL`, `ENDLESS_TAIL` and
+    // The pixel's tolerance is divided among its polygons in proportion to their areas, but each
+    // polygon gets at least the fraction `MIN_SHARE`. The limits `FINITE_TAIL`, `ENDLESS_TAIL` and
     // `ONLY_FINITE_TAIL` assume that a polygon has four edges. If it has more, each edge gets
     // proportionally less.
     let share = area.abs().max(MIN_SHARE) * (4.0 / corners.len() as f64).min(1.0);
@@ -170,10 +170,9 @@ fn terms(
     area: f64,
     limit: f64,
 ) -> (usize, f64) {
-    // The symbols are those of the module's documentation; n is the number of terms. The truncation
-    // error of P follows from |A_k| ≤ ½π^(1−k). Let p be the larger of the slopes |∂m/∂a| and
-    // |∂m/∂b|, and m the smallest depth. The integral of the error is at most the polygon's area in
-    // the picture times
+    // The symbols are those of the module's documentation; n is the number of terms. Let p be the
+    // larger of the slopes |∂m/∂a| and |∂m/∂b|, and m the smallest depth. Because |A_k| ≤ ½π^(1−k),
+    // the truncation error of P has an integral of at most the polygon's area in the picture times
     //
     // ½π^(1−n)·(n+2)!/2·(p/m)^n.
     //
@@ -181,9 +180,9 @@ fn terms(
     //
     // n·π^(1−n)·(n+2)!/2·(g/m)^n·∫ J |dt|.
     //
-    // Here t is the one of the coordinates a and b that changes more along the edge. g is the
-    // larger of |∂m/∂t| on the floor and |dm/dt| along the edge. The integral ∫ J |dt| is at most
-    // J·min(|Δt|, m/2γ), with J at the near end.
+    // Here t is the coordinate (a or b) that changes more along the edge, and g is the larger of
+    // |∂m/∂t| on the floor and |dm/dt| along the edge. The integral ∫ J |dt| is at most J·min(|Δt|,
+    // m/2γ), with J at the near end.
     let slope = board.slope[0].abs().max(board.slope[1].abs());
     let (mut ratio, mut weight) = (slope / nearest, 0.0);
     for edge in edges.iter().flatten() {
@@ -253,9 +252,9 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
 }
 
 /// An edge of a polygon, directed from its near end to its far end. A point of the edge shows a
-/// point (a, b) of the floor, in squares. t is the one of these two coordinates that changes more
-/// along the edge, c is the other one, and m is the depth. The sum over the edge's crossings runs
-/// over the lines of the board on which c is constant.
+/// point (a, b) of the floor, in squares, at the depth m. The coordinate (a or b) that changes more
+/// along the edge is called t, and the other one is called c. The sum over the edge's crossings
+/// runs over the lines of the board on which c is constant.
 struct Edge {
     /// +1 or −1: the sign with which the edge's contribution is added to the integral over the
     /// polygon. It depends on two conditions: whether the polygon's boundary runs from the edge's
@@ -272,9 +271,8 @@ struct Edge {
     /// Values at the far end: the coordinate of the floor that changes less along the edge, the one
     /// that changes more, and the depth. `None` if the far end is on the horizon.
     end: Option<(f64, f64, f64)>,
-    /// Number of the board's lines that the edge crosses, counting only those on which the
-    /// coordinate that changes less along the edge is constant. Infinite if the edge ends on the
-    /// horizon.
+    /// Number of the board's lines of constant c that the edge crosses, where c is the coordinate
+    /// of the floor that changes less along the edge. Infinite if the edge ends on the horizon.
     count: Double,
     /// Change of t from the near to the far end, where t is the coordinate of the floor that
     /// changes more along the edge. Infinite if the far end is on the horizon.
@@ -331,7 +329,7 @@ impl Edge {
         } else {
             far.depth - near.depth
         };
-        // If no line is crossed, `lines` is 0. `stride` is then not used, and is set to 0, too.
+        // If the edge crosses no line, `lines` is 0 and `stride` is not used. It is then set to 0.
         let mut stride = lines;
         if !lines.is_zero() {
             stride = along.over(&across);
@@ -365,8 +363,8 @@ impl Edge {
         tolerance: f64,
         budget: &PixelBudget,
     ) -> BoundedSum {
-        // With the symbols of the module's documentation, the contribution is ρ·∫ s(c) dX from the
-        // near to the far end, where c is the coordinate that changes less along the edge.
+        // In the symbols of the module's documentation, the contribution is ρ·∫ s(c) dX from the
+        // near to the far end. Here, c is the floor coordinate that changes less along the edge.
         let series = self.series(board, terms);
         let square = self.c.floor();
         let start = square_wave(square);
@@ -402,7 +400,7 @@ impl Edge {
         // Term k of the series X at an end of the edge is computed with 3k + 4 roundings and is
         // less than 2^−k times term 0. The roundings add up to at most 14 unit roundoffs, relative
         // to term 0. The constant 32 covers both ends. Every term is also proportional to the
-        // density factor K, which has an error of its own.
+        // density factor K, whose relative error is `density_error`.
         let (ends, all) = (32.0 * UNIT * ends, ends + sum.value.abs());
         sum.value *= self.rho;
         sum.bound = self.rho.abs() * (sum.bound + ends + 2.0 * board.density_error * all);

@@ -16,19 +16,19 @@ use crate::math::{Double, Real, two_product};
 /// Unit roundoff of `f64`, 2^−53.
 pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
 
-/// Absolute value of the determinant of the matrix of N_a, N_b and L ([`Homography`]) up to which
-/// the matrix is treated as singular. Each form is first scaled so that its largest coefficient is
-/// between 1 and 2. For a singular matrix, the computation continues with this value in place of
-/// the determinant, so that it stays finite, and the error bound covers the whole polygon. Not
-/// critical: a determinant of products of about 1 has a rounding error of about 1e-31, so that a
-/// much smaller one has no correct digit.
+/// Maximum absolute value of the determinant of the matrix of N_a, N_b and L ([`Homography`]) at
+/// which the matrix is treated as singular. Each form is first scaled so that its largest
+/// coefficient is between 1 and 2. For a singular matrix, the determinant is replaced by this value
+/// to keep results finite, and the error bound covers the whole polygon. Not critical: a
+/// determinant of products of about 1 has a rounding error of about 1e-31, so a much smaller
+/// determinant has no correct digit.
 const MIN_DETERMINANT: f64 = 1e-100;
 
-/// Displacement of squares by rounding errors, in pixels, up to which corners may be moved onto the
-/// horizon. [`Homography::corner`] moves a corner if its distance from the horizon may be only a
-/// rounding error. If squares may be displaced further, no corner is moved, because the move would
-/// increase the error bound too much. With this displacement, the move adds about a hundredth of
-/// the default tolerance to the bound.
+/// Maximum displacement of squares by rounding errors, in pixels, at which corners may be moved
+/// onto the horizon. [`Homography::corner`] moves a corner if its distance from the horizon may be
+/// only a rounding error. If squares may be displaced farther, no corner is moved, because the move
+/// would increase the error bound too much. With this displacement, the move adds about a hundredth
+/// of the default tolerance to the bound.
 const MAX_HORIZON_DISPLACEMENT: f64 = 1e-11;
 
 /// An integral of a checkerboard's sign (1 on squares of one colour, −1 on the others), and a bound
@@ -54,8 +54,8 @@ pub(in crate::exact) struct BoundedSum {
 ///
 /// m(a, b) = p·a + q·b + r,
 ///
-/// where (p, q, r) is the third row of M⁻¹. A piece da·db of the floor covers J = K/m³ square
-/// pixels, where K = 1/|det M|.
+/// where (p, q, r) is the third row of M⁻¹. At the depth m, a unit of the floor's area covers J =
+/// K/m³ square pixels, where K = 1/|det M|.
 #[derive(Clone, Debug)]
 pub(in crate::exact) struct Homography {
     /// The linear forms N_a and N_b, the numerators of the floor's coordinates a = N_a/L and b =
@@ -101,8 +101,8 @@ pub(super) struct Corner {
     pub depth: f64,
 }
 
-/// The part of a convex polygon of the picture in which the floor is seen, and this part's side on
-/// the horizon, if it has one.
+/// The part of a convex polygon of the picture that shows the floor, and its edge on the horizon,
+/// if it has one.
 #[derive(Debug)]
 pub(super) struct VisiblePart {
     pub polygon: Vec<DVec2>,
@@ -164,10 +164,10 @@ fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
 
 impl Homography {
     /// Derives the homography from the three linear forms of [`Homography`]. `across` contains the
-    /// forms of the two numerators, and `below` is the form of the common denominator. All three
-    /// may be multiplied by the same positive factor, because only their quotients are used. The
-    /// error bounds are smallest if the origin of the floor's coordinates is near the part of the
-    /// floor that the pixel shows.
+    /// forms of the two numerators, and `below` is the form of the common denominator. Multiplying
+    /// all three forms by the same positive factor changes nothing, because only their quotients
+    /// are used. The error bounds are smallest if the origin of the floor's coordinates is near the
+    /// part of the floor that the pixel shows.
     pub fn new(across: [[f64; 3]; 2], below: [f64; 3]) -> Self {
         let (below, scale) = normalized(below);
         let across = across.map(|form| form.map(|c| libm::ldexp(c, -scale)));
@@ -187,9 +187,9 @@ impl Homography {
             })
             .sum();
         // Returns the maximum relative error of 1/det M, where M is the matrix of the three forms.
-        // Each of the three factors of a product has a relative error of one `unit`; the products
-        // and their sums, in double-double, have errors of two `unit`s each. The division adds
-        // roundings in `f64`.
+        // The determinant is a sum of products of three factors. Each factor has a relative error
+        // of one `unit`. The products and their sum, in double-double, have errors of two `unit`s
+        // each. The division adds roundings in `f64`.
         let det_off = |unit: f64| {
             if is_singular {
                 f64::INFINITY
@@ -197,9 +197,9 @@ impl Homography {
                 8.0 * unit * products / det.abs() + 4.0 * UNIT
             }
         };
-        // The value of a linear form is computed with three roundings relative to its largest
-        // terms, and the quotient of two forms with one more. Each form is therefore given an error
-        // of four roundings.
+        // The value of a linear form is computed with three roundings of its terms, and the
+        // quotient of two forms with one more rounding. Each form is therefore given an error of
+        // four roundings.
         let errors = [a, b, below].map(|form| 4.0 * UNIT * size(&form));
         let steepness = libm::hypot(below[0], below[1]);
         // Errors e of the forms displace a point by v = M⁻¹·e, where M is the matrix of the three
@@ -272,25 +272,24 @@ impl Homography {
         Corner { floor, depth }
     }
 
-    /// Returns whether [`Self::corner`] treats the point `at` as lying on the horizon although it
-    /// lies below the horizon. It does so if the point's distance from the horizon may be only a
-    /// rounding error.
+    /// Returns whether the point `at` lies below the horizon, but so close to it that
+    /// [`Self::corner`] treats it as lying on the horizon.
     pub(super) fn is_set_on_horizon(&self, at: DVec2) -> bool {
         let level = form(&self.below, at);
         level > 0.0 && level <= self.horizon_tolerance
     }
 
-    /// Returns one coordinate of the point of the floor that the point `at` shows, in squares, and
-    /// its maximum rounding error. `axis` is 0 for the first coordinate and 1 for the second.
-    /// `level` is the value of the form `below` at `at`, the denominator of the coordinates, and
-    /// must be greater than 0.
+    /// Returns one coordinate, in squares, of the point of the floor that the point `at` of the
+    /// picture shows, and the coordinate's maximum rounding error. `axis` is 0 for the first
+    /// coordinate and 1 for the second. `level` is the value of the form `below` at `at`, the
+    /// denominator of the coordinates, and must be greater than 0.
     pub(in crate::exact) fn place(&self, axis: usize, at: DVec2, level: f64) -> (f64, f64) {
         let place = form(&self.across[axis], at) / level;
         let terms = size(&self.across[axis]) + place.abs() * size(&self.below);
         // The coordinate is N/L, a quotient of two forms. The factors of a form are computed with
         // three roundings, its value with four, and the quotient with one: 8 in total. The error of
-        // N/L is proportional to 1/L. If L is as small as twice its own error, the true 1/L may be
-        // twice the computed one, so the total is doubled.
+        // N/L is proportional to 1/L. If L is only twice its own error, the true 1/L may be twice
+        // the computed 1/L, so the total is doubled.
         (place, 16.0 * UNIT / level * terms)
     }
 
@@ -300,9 +299,9 @@ impl Homography {
     pub(in crate::exact) fn displacement_error(&self, polygon: &[DVec2]) -> f64 {
         let (_, perimeter) = measure(polygon);
         // Errors e of the forms displace a point by v = M⁻¹·e, where M is the matrix of the three
-        // forms. The displacement changes the value of the form L only by the error of L. Points
-        // near the horizon therefore hardly move perpendicular to the horizon, even if they move
-        // far along it.
+        // forms. The value of the form L at the point changes only by the error of L. Points near
+        // the horizon, where L is 0, therefore hardly move perpendicular to the horizon, even if
+        // they move far along it.
         let levels = polygon.iter().map(|&p| form(&self.below, p));
         let [least, more] = self.across_horizon;
         let across = (least + more * levels.fold(0.0, f64::max)).min(self.displacement);

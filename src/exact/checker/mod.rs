@@ -4,7 +4,7 @@
 //! In: a board's linear forms in a sub-pixel ([`homography`]) and a polygon. Out: the area of the
 //! first colour minus that of the second, in square pixels, with an error bound.
 //!
-//! - Near squares are cut out of the picture one by one ([`near`]).
+//! - Squares near the eye are cut out of the picture one by one ([`near`]).
 //! - Over all farther squares, Green's theorem turns the integral into a sum over the lines that
 //!   the polygon's edges cross ([`green`]). If an edge crosses very many or infinitely many lines,
 //!   [`tail`] evaluates the sum. This happens towards the horizon, and along an edge that hardly
@@ -39,21 +39,22 @@ pub(super) use self::{
     special::square_wave,
 };
 
-/// Distance up to which squares are near, in squares, measured from the line in the board's plane
-/// where the depth is 0. Near squares are cut out one by one; the board beyond is integrated along
-/// its boundary by Green's theorem, as a series of at most 20 terms. With 18 squares, the bound of
-/// the omitted terms is proportional to 22!/2·(18π)⁻²⁰, about 5e-15. A smaller distance would make
-/// this factor larger; with a larger one, more squares would have to be cut out.
+/// Distance, in squares, up to which squares are near. It is measured from the line in the board's
+/// plane where the depth is 0 ([`Homography`]). Near squares are cut out one by one. The farther
+/// part of a polygon is integrated along its boundary by Green's theorem, with series of at most 20
+/// terms. With a distance of 18 squares, the bound of the omitted terms is proportional to
+/// 22!/2·(18π)⁻²⁰, about 5e-15. With a smaller distance, this factor would be larger; with a larger
+/// distance, more squares would have to be cut out.
 const NEAR_SQUARES: f64 = 18.0;
-/// Maximum number of squares in a polygon at which all of them are cut out one by one, at any
-/// distance. With more squares, only those within [`NEAR_SQUARES`] are. Not critical: with 6 or 96,
-/// the measured running time changes by at most about 10 %.
+/// Maximum number of squares in a polygon that are all cut out one by one, at any distance. If a
+/// polygon shows more squares, only those within the distance [`NEAR_SQUARES`] are cut out. Not
+/// critical: with 6 or 96, the measured running time changes by at most about 10 %.
 const MAX_CUT_SQUARES: f64 = 24.0;
 /// Maximum depth at which squares are cut out one by one. The depth is 1 over the form L
 /// ([`Homography`]), which is 0 on the horizon. At this depth, a point of the picture is only a
-/// thousand rounding errors away from the horizon, because the largest factor of L is about 1. If
-/// squares are so large that even squares beyond this depth are near ([`NEAR_SQUARES`]), the area
-/// beyond it is not integrated, but added to the error bound.
+/// thousand rounding errors away from the horizon, because the largest factor of L is about 1.
+/// Squares may be so large that even squares beyond this depth are near ([`NEAR_SQUARES`]). The
+/// area beyond this depth is then not integrated, but added to the error bound.
 const MAX_DEPTH: f64 = 1e13;
 
 impl Homography {
@@ -87,9 +88,9 @@ impl Homography {
             });
         }
         if polygon.iter().any(|&at| self.is_set_on_horizon(at)) {
-            // `Self::corner` moves a corner to the horizon if only rounding errors keep it off the
-            // horizon. The move displaces squares at most as far as rounding does, so that the same
-            // bound is added a second time.
+            // `Self::corner` moves a corner to the horizon if its distance from the horizon may be
+            // only a rounding error. The move displaces squares at most as far as rounding errors
+            // do. The bound for rounding errors is therefore added a second time.
             sum.bound += self.displacement_error(&visible.polygon);
         }
         sum.within(polygon)
@@ -97,7 +98,8 @@ impl Homography {
 
     /// Estimates the number of squares that a polygon shows: its area on the floor, in squares,
     /// plus the numbers of rows and columns of its bounding box on the floor. The area of the
-    /// bounding box would be a poor estimate, because a slanted strip has far fewer squares.
+    /// bounding box would be a poor estimate, because a narrow diagonal polygon shows far fewer
+    /// squares.
     fn squares(&self, polygon: &[DVec2]) -> f64 {
         let floor: Vec<DVec2> = polygon
             .iter()

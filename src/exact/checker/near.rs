@@ -1,5 +1,5 @@
-//! Integrates a checkerboard's sign, 1 on squares of one colour and −1 on the others, over near
-//! squares: each square is cut out of the picture.
+//! Integrates a checkerboard's sign, 1 on squares of one colour and −1 on the others, over a
+//! polygon of few squares or of squares near the eye. Each square is cut out of the polygon.
 //!
 //! In: a convex polygon of the picture that does not reach the horizon. Out: the sum of the areas
 //! of the squares in it, each multiplied by its sign, in square pixels, with an error bound. The
@@ -21,15 +21,15 @@ use super::{
 use crate::math::two_sum;
 
 /// Maximum number of corners that cutting may add to a polygon. Squares are cut off the polygon one
-/// after another, and each cut changes the remaining polygon. If this polygon has more corners,
-/// cutting ends, and the polygon's area is added to the error bound. Exact cuts add at most two
+/// after another, and each cut changes the remaining polygon. If it gets more corners than the
+/// maximum, cutting ends, and its area is added to the error bound. Exact cuts add at most two
 /// corners, both on the line of the latest cut. Many more corners show that the lines are closer to
 /// each other than rounding errors, so that cutting is useless.
 const MAX_EXTRA_CORNERS: usize = 32;
 
 /// Maximum absolute value of a board coordinate, in squares, in a polygon that is cut into squares.
 /// A polygon with larger coordinates is not cut; its area is added to the error bound. Up to this
-/// value, the number of a square and those of its neighbours are exact in `f64`.
+/// value, the numbers of a square and its neighbours are exact in `f64`.
 const MAX_SQUARE: f64 = 1e15;
 
 /// Integrates the board's sign over a convex polygon that does not reach the horizon, in square
@@ -169,8 +169,8 @@ impl Cutter {
         }
         let Some([from, to]) = chord else { return };
         let size = |k: usize| self.across[k].abs() + (n * self.below[k]).abs();
-        // The cutting line's form has the maximum error `off`: three roundings in computing its
-        // factors, and four in computing a value. Each rounding is relative to the sum of the
+        // `off` is the maximum error of a value of the cutting line's form: three roundings of its
+        // factors, and four of the value itself. Each rounding is relative to the sum of the
         // absolute values of the form's terms. The chord's end points are computed with four more
         // roundings, which are added to the error below.
         let off = 7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2));
@@ -199,9 +199,9 @@ impl CompensatedSum {
     fn sum(&self) -> BoundedSum {
         BoundedSum {
             value: self.value + self.rest,
-            // Adding `rest`, the sum of all earlier rounding errors, has an error of at most one
-            // unit roundoff, because the absolute value of the result is at most 1. The errors in
-            // `rest` itself are far below the second unit roundoff.
+            // `rest` is the sum of all earlier rounding errors. Adding it causes an error of at
+            // most one unit roundoff, because the absolute value of the result is at most 1. The
+            // error of `rest` itself is far below a second unit roundoff.
             bound: self.bound + 2.0 * UNIT,
         }
     }

@@ -3,7 +3,7 @@
 //!
 //! The periodic Euler polynomials A_k are the repeated antiderivatives of the square wave (DLMF
 //! 24.2; Borwein, Calkin and Manna, "Euler–Boole summation revisited", 2009). The error of a
-//! computed value is a few unit roundoffs of the polynomial's greatest value.
+//! computed value is a few unit roundoffs, relative to the polynomial's greatest value.
 //!
 //! The exponential integrals, with z = −iy (DLMF 8.19), are
 //!
@@ -68,10 +68,11 @@ const ORDERS: usize = 22;
 /// the board. The polynomial has either only even or only odd powers.
 const POWERS: usize = ORDERS / 2;
 
-/// Coefficients of the Taylor series of 1/cosh(x/2), which generates the periodic Euler polynomials
-/// ([`waves`]), in even powers of x. They follow from the coefficients 1/(4^i·(2i)!) of cosh(x/2),
-/// because the product of the two series is 1. Rounding errors do not grow, because all terms of a
-/// coefficient are about as large as the coefficient.
+/// Coefficients of the Taylor series of 1/cosh(x/2): entry j is that of x^2j, and odd powers do not
+/// occur. The function generates the periodic Euler polynomials ([`waves`]). The coefficients
+/// follow from those of cosh(x/2), 1/(4^i·(2i)!), because the product of the two series is 1.
+/// Rounding errors do not grow, because all terms of a coefficient are about as large as the
+/// coefficient.
 const SECH: [f64; POWERS] = {
     let mut all = [0.0; POWERS];
     all[0] = 1.0;
@@ -119,9 +120,9 @@ pub(in crate::exact) fn square_wave(t: f64) -> f64 {
     if half == half.floor() { 1.0 } else { -1.0 }
 }
 
-/// Returns the signed distance of `t` from the middle of its square, and the square wave there. On
-/// the border of two squares, either square may be used, because the periodic Euler polynomials A_k
-/// are continuous from k = 1 on. |`t`| must be below 2^51, the limit of [`ROUND`].
+/// Returns the signed distance of `t` from the middle of its square, and the sign of the square
+/// wave on it. On the border of two squares, either square may be used, because the periodic Euler
+/// polynomials A_k are continuous for k ≥ 1. |`t`| must be below 2^51, the limit of [`ROUND`].
 #[inline(always)]
 fn from_middle(t: f64) -> (f64, f64) {
     let middle = t - 0.5;
@@ -142,8 +143,8 @@ fn from_middle(t: f64) -> (f64, f64) {
 /// Calkin and Manna, "Euler–Boole summation revisited", 2009). From k = 1 on, A_k is continuous and
 /// |A_k| ≤ ½π^(1−k).
 ///
-/// `TERMS` is a constant so that the compiler can vectorise over many t. `ROWS` must be `TERMS` +
-/// 2.
+/// `TERMS` is a const parameter, so that the compiler can vectorise a loop over many t. `ROWS` must
+/// be `TERMS` + 2.
 #[inline(always)]
 pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS] {
     let (eta, sign) = from_middle(t);
@@ -196,8 +197,8 @@ const LARGE: f64 = 64.0;
 /// distance would need fewer terms per series but a larger table, which now has 123 series.
 const STEP: f64 = 0.5;
 /// Number of terms of a Taylor series of the exponential integral F_3 ([`integrals`]). The distance
-/// of y from the expansion point is at most ¼, and y is at least 3, so that the first omitted term
-/// is at most (¼/3)^16 = 5e-18.
+/// of y from the expansion point is at most ¼, and y is at least 3. The first omitted term is
+/// therefore at most (¼/3)^16 = 5e-18.
 const EXPANSION_TERMS: usize = 16;
 type Expansion = [Complex; EXPANSION_TERMS];
 static EXPANSIONS: LazyLock<Vec<Expansion>> = LazyLock::new(expansions);
@@ -295,9 +296,9 @@ fn expansions() -> Vec<Expansion> {
     //
     // y·F_s′ = (s − 1 − iy)·F_s − 1.
     //
-    // Errors satisfy this equation without the −1, so that they are proportional to y^(s−1),
-    // whereas F_s grows about like 1/y. They therefore decay on the way down. The coefficients c_k
-    // of the Taylor series about y satisfy the recurrence
+    // An error of F_s satisfies this equation without the −1, so it is proportional to y^(s−1),
+    // whereas F_s is about proportional to 1/y. Towards smaller y, errors therefore decay. The
+    // coefficients c_k of the Taylor series about y satisfy the recurrence
     //
     // (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1 − δ_k,
     //
@@ -401,9 +402,10 @@ mod tests {
         close(expanded(&EXPANSIONS, 3.0), power_series(3.0), 1e-14);
     }
 
-    /// Compares the integrals for large |y| with the first two terms of the asymptotic series of
-    /// their real and of their imaginary parts. The third term is at most 6·7·8·9·y⁻⁴ times the
-    /// first, about 3.02e-13 at y = 10⁴. The tolerance is this ratio plus a few roundings.
+    /// Compares the exponential integrals for large |y| with the first two terms of their
+    /// asymptotic series, separately for real and imaginary parts. The third term is at most
+    /// 6·7·8·9·y⁻⁴ times the first, about 3.02e-13 at y = 10⁴. The tolerance is this ratio plus a
+    /// few roundings.
     #[test]
     fn integrals_of_large_arguments_have_all_their_digits() {
         for y in [1e4, -1e4, 3e7, 5e10, -1e15] {

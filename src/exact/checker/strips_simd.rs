@@ -14,8 +14,8 @@
 //!
 //! W_k = Σ_i σ_i·|strip i ∩ H_k|.
 //!
-//! W_0 is the same sum over the whole strips, and s_0 the sign of the pixel's first square. The
-//! sign of squares changes at each line, so that the integral of the board's sign over the pixel is
+//! W_0 is the same sum over the whole strips, and s_0 the sign of the pixel's first square. Because
+//! the sign of the squares changes at each line, the integral of the board's sign over the pixel is
 //!
 //! s_0·(W_0 + 2·Σ_k (−1)^k·W_k).
 //!
@@ -23,10 +23,10 @@
 //!
 //! ½·Σ f·(p − O) × (q − p).
 //!
-//! Here f is the fraction of the side that lies beyond the line, and O is a point on the line, so
-//! that the part of the outline along the line contributes 0. Each side of the pixel has a part in
-//! each strip. A part may be empty: its two ends are then exactly the same point, so that it adds
-//! exactly 0.
+//! Here f is the fraction of the side that lies beyond the line, and O is a point on the line. With
+//! this choice of O, the part of the outline along the line contributes 0. Each side of the pixel
+//! has a part in each strip, which may be empty. The two ends of an empty part are exactly the same
+//! point, so it adds exactly 0.
 
 use std::array;
 
@@ -40,9 +40,9 @@ use super::{
 };
 use crate::tracer::{CheckerForms, CheckerPixel, LocalForm};
 
-/// Maximum number of lines that cut a pixel into strips. A pixel in which both of the board's
-/// families of lines have more lines is computed alone. With 6 lines, the buffer of 34 sides of 320
-/// bytes each stays in the first-level cache.
+/// Maximum number of lines that cut a pixel into strips. A pixel that is crossed by more lines of
+/// both families of the board is computed alone. With 6 lines, the buffer contains 34 sides of 320
+/// bytes each, which fit into the first-level cache.
 pub(super) const MAX_STRIP_LINES: usize = 6;
 
 /// Number of pixels that are computed at once. The widest vector registers hold eight `f64`.
@@ -63,13 +63,13 @@ pub(super) struct BoardLanes {
     many: FormRows,
     below: FormRows,
     /// Sign by which each pixel's integral is multiplied at the end. The integral is computed as if
-    /// the pixel's first square had the board's first colour; the sign is −1 if it has the second
-    /// colour. Of the columns and rows that the pixel shows, the first square is in those with the
-    /// least numbers.
+    /// the pixel's first square had the board's first colour. The sign is −1 if this square has the
+    /// second colour. The first square is in the column and the row with the least numbers that the
+    /// pixel shows.
     sign: Lanes,
-    /// Number of the square at each of the four corners of each pixel: the column number, or the
-    /// row number, relative to the pixel's first column or row. It is the column number if fewer
-    /// lines between columns than between rows cross the pixel, and otherwise the row number.
+    /// Column number, or row number, of the square at each of the four corners of each pixel. It is
+    /// counted from the pixel's first column or row. It is the row number if fewer lines between
+    /// rows than between columns cross the pixel, and otherwise the column number.
     squares: [Lanes; 4],
 }
 
@@ -130,9 +130,9 @@ impl LaneSums {
 
 impl BoardLanes {
     /// Sets the board of the pixel with the index `place`, from 0 to 7. A board has two families of
-    /// parallel lines, between columns (0) and between rows (1). `families` lists the two, the one
-    /// with fewer lines in the pixel first. `first` holds the numbers of the pixel's first column
-    /// and first row of squares.
+    /// parallel lines, those between columns (0) and those between rows (1). `families` lists the
+    /// family with fewer lines in the pixel first. `first` holds the numbers of the pixel's first
+    /// column and first row of squares.
     pub fn set(
         &mut self,
         place: usize,
@@ -189,13 +189,13 @@ impl BoardLanes {
         }
         // Rounding errors: for every line, the part of a side beyond the line is computed by eight
         // operations from the side's length and a distance of at most √2. A strip has five sides,
-        // of which four lie on sides of the pixel. Adding a side causes one rounding, and adding
-        // the sum for a line causes two. The rounding of points may also displace each cutting
-        // line, and the lines on either side, by four unit roundoffs.
+        // four of them on sides of the pixel. Adding a side causes one rounding, and adding the sum
+        // for a line causes two. The rounding of the strips' corners may also displace each line
+        // between strips, and the next line on either side of the pixel, by four unit roundoffs.
         //
-        // A displaced line sweeps at most √2, the pixel's diagonal, times its displacement. The
-        // sign changes there, which doubles the error. So displacements are multiplied by 3, which
-        // exceeds 2√2.
+        // A displaced line sweeps an area of at most √2, the pixel's diagonal, times its
+        // displacement. In this area, the sign is wrong, so the error is twice the area.
+        // Displacements are multiplied by 3, which exceeds 2√2.
         let [strips, lines] = [few + 1, many + 1].map(|count| count as f64);
         let points = 4.0 * UNIT * (strips + 1.0);
         LaneSums {
@@ -224,14 +224,15 @@ impl BoardLanes {
     }
 
     /// Cuts each pixel into `few` + 1 strips and writes the strips' sides to `sides`. The signs of
-    /// the strips alternate and start with 1. Returns what to add to each pixel's error bound: 0,
-    /// or infinity if the pixel could not be cut.
+    /// the strips alternate and start with 1. Returns a number to add to each pixel's error bound:
+    /// 0, or infinity if the pixel could not be cut.
     #[inline(always)]
     fn strips(&self, few: usize, sides: &mut [Sides]) -> Lanes {
         let mut failed = [0.0; PIXELS];
         let (parts, chords) = sides.split_at_mut(4 * (few + 1));
-        // For each side of the pixel, the fraction of its length that the strips so far have
-        // covered, measured from the end with the smaller square number.
+        // For each side of the pixel, the position up to which earlier strips cover the side. The
+        // strips start at the end with the smaller square number. A position is 0 at the side's
+        // start and 1 at its end.
         let mut reached = [[0.0; PIXELS]; 4];
         for (corner, reached) in reached.iter_mut().enumerate() {
             let [here, next] = [corner, (corner + 1) % 4].map(|corner| &self.squares[corner]);
@@ -271,8 +272,8 @@ impl BoardLanes {
                     } else {
                         whole
                     };
-                    // If the form has the same value at both ends of the pixel's side, the crossing
-                    // is undetermined, and the cut fails.
+                    // If the line's form has the same value at both ends of the pixel's side, the
+                    // crossing cannot be computed, and the pixel cannot be cut.
                     let known = if start == end { f64::INFINITY } else { 1.0 };
                     crossed[0][i] = if starts_below & !ends_below {
                         known
@@ -315,7 +316,7 @@ impl BoardLanes {
             // enters the strips before the line, to the point where the boundary leaves these
             // strips. The chord is a side of two strips. In the outline of the strip after the
             // line, the chord has the stored direction. In the outline of the strip before the
-            // line, it has the opposite direction. The two strips have opposite signs, so that the
+            // line, it has the opposite direction. Because the two strips have opposite signs, the
             // chord's total weight is −2 times the sign of the strip before the line.
             let [up, down] = ends;
             for i in 0..PIXELS {

@@ -27,9 +27,10 @@ impl Homography {
     }
 }
 
-/// A pixel's view by a level camera: the camera's height in squares, its focal length in pixels,
-/// its direction in degrees, the pixel's place in pixels to the right of and below the centre of
-/// the horizon, and the point of the board below the eye, in squares.
+/// One pixel in the picture of a level camera. `height` is the eye's height above the board in
+/// squares, `focal` the focal length in pixels, and `degrees` the camera's direction. `place` is
+/// the pixel's position, in pixels to the right of and below the centre of the horizon. `foot` is
+/// the point of the board below the eye, in squares.
 #[derive(Clone, Copy, Debug)]
 struct PixelView {
     height: f64,
@@ -196,8 +197,8 @@ fn pixels_of_many_squares() {
             agree(
                 view.board().alone(&PIXEL),
                 brute(view.forms(), &PIXEL),
-                // A colour's share is half of the integral of signs plus a half, so that the
-                // integral's tolerance is twice that of a mean.
+                // A colour's share is half of the integral of signs plus a half, so the integral's
+                // tolerance is twice that of a mean.
                 2.0 * DEFAULT_TOLERANCE,
                 view,
             );
@@ -205,8 +206,8 @@ fn pixels_of_many_squares() {
     }
 }
 
-/// In a very wide view, a pixel sees near squares far to the side. They form rows of hundreds of
-/// squares, which the pixel's sides cut at all slopes.
+/// In a very wide view, a pixel shows near squares far to the side. They form rows of hundreds of
+/// squares, which the pixel's sides cut at all angles.
 #[test]
 fn wide_views() {
     for degrees in [0.0, 0.3, 2.0, 30.0, 45.0, 89.9, 90.0, 135.0, 200.0] {
@@ -228,7 +229,7 @@ fn wide_views() {
     }
 }
 
-/// If squares are very small, an edge crosses a million lines. The boards are seen from above,
+/// The squares are so small that an edge crosses a million lines. The boards are seen from above,
 /// straight down or tilted. The integral over the pixel is compared with the sum over parts whose
 /// edges cross fewer lines.
 #[test]
@@ -281,12 +282,13 @@ fn the_horizon() {
             view.place = DVec2::new(0.5, y);
             let board = view.board();
             let found = board.alone(&PIXEL);
-            // A colour's share is half of the integral of signs plus a half, so that the integral's
+            // A colour's share is half of the integral of signs plus a half, so the integral's
             // bound may be twice that of a mean.
             assert!(found.bound < 1.8e-9, "{view:?}: {found:?}");
             // Five vertical slices make up the pixel. Their edges cross the lines of the board at
-            // other points than the pixel's edges do, so their integrals are sums of other terms.
-            // Within the error bounds, their total must be the integral over the whole pixel.
+            // other points than the pixel's edges, so their integrals are independent computations.
+            // Within the error bounds, the integrals must add up to the integral over the whole
+            // pixel.
             let mut slices = BoundedSum::default();
             for i in 0..5 {
                 let [low, high] = [i, i + 1].map(|i| f64::from(i) / 5.0 - 0.5);
@@ -304,8 +306,9 @@ fn the_horizon() {
     }
 }
 
-/// The pixel lies on the horizon, and a line divides it in two. The integral over the pixel minus
-/// that over the upper part must equal the sum over the squares of the lower part.
+/// The pixel lies on the horizon, and a line divides it into an upper and a lower part. The
+/// integral over the pixel minus the integral over the upper part must equal the sum over the
+/// squares of the lower part.
 #[test]
 fn the_end_is_the_limit() {
     for degrees in [0.0, 45.0, 30.0, 71.565_051_177, 44.999] {
@@ -327,8 +330,8 @@ fn the_end_is_the_limit() {
 }
 
 /// Integrates the board's sign over `polygon` in the limit of a view of 180 degrees, where a pixel
-/// far to the side sees one straight line on the floor. Integrates up to the distance `most` along
-/// the line. Returns the integral, and the area of the part of the polygon that shows greater
+/// far to the side shows only one straight line of the floor. Integrates up to the distance `most`
+/// along the line. Returns the integral, and the area of the part of the polygon that shows greater
 /// distances.
 fn brute_limit(view: &PixelView, polygon: &[DVec2], most: f64) -> (f64, f64) {
     // The point (x, y) of the picture, relative to the middle of the horizon, shows the point of
@@ -378,9 +381,9 @@ fn widest(focal: f64, degrees: f64) -> PixelView {
     }
 }
 
-/// In the widest views, the board's coordinates a and b are nearly proportional. A pixel sees a
-/// strip of very many squares that is so narrow that rounding errors displace it visibly. The
-/// polygon is below the horizon, or reaches it.
+/// In the widest views, the board's coordinates a and b are nearly proportional. A pixel shows a
+/// strip of very many squares. The strip is so narrow that rounding errors displace it noticeably.
+/// Some polygons reach the horizon, others stay below it.
 #[test]
 fn the_widest_views() {
     for degrees in [30.0, 71.565_051_177, 135.0, 224.9] {
@@ -419,8 +422,8 @@ proptest! {
         let pieces = left.value + right.value;
         let bound = whole.bound + left.bound + right.bound;
         prop_assert!((pieces - whole.value).abs() <= bound, "{} {} {bound}", whole.value, pieces);
-        // The integral over the region between the arc and its chord is compared with that over a
-        // polygon of 100 chords.
+        // The integral over the region between the arc and its chord is compared with the integral
+        // over a polygon with 100 chords of the arc as sides.
         let segment = board.over_segment(&arc, &budget());
         let points: Vec<DVec2> = (0..=100).map(|i| arc.at(f64::from(i) / 100.0)).collect();
         let chords = board.alone(&points);
@@ -440,8 +443,8 @@ proptest! {
         prop_assume!(matrix.determinant().abs() > 1e-3);
         let found = Homography::new([a, b], below).alone(&PIXEL);
         let expected = brute([a, b, below], &PIXEL);
-        // The expected value maps the corners of squares to the picture by the inverse matrix. Its
-        // accuracy depends on the condition number of the matrix.
+        // `brute` maps the corners of squares to the picture by the inverse matrix. The accuracy of
+        // `expected` therefore depends on the condition number of the matrix.
         let size = |matrix: DMat3| matrix.to_cols_array().map(f64::abs).iter().sum::<f64>();
         let roundings = 4.0 * f64::EPSILON * size(matrix) * size(matrix.inverse());
         prop_assert!((found.value - expected).abs() <= found.bound + roundings, "{found:?} {expected}");
@@ -463,7 +466,8 @@ fn from_straight_above() {
     );
 }
 
-/// Beyond the budget or after a cancellation, the integral is 0 and the bound is the whole area.
+/// If the budget is too small or the computation is cancelled, the integral is 0 and its bound is
+/// the whole area.
 #[test]
 fn nothing_is_computed_beyond_the_budget() {
     let below = [0.0, 0.0, 1.0];

@@ -50,21 +50,22 @@ pub struct Oracle {
     pixel: N,
 }
 
-/// Values of a shape that are the same for every ray, computed once.
+/// Values of a shape that do not depend on the ray and are computed only once.
 #[derive(Debug)]
 enum PreparedShape {
     /// A sphere: `f` is eye − centre, `square` is f·f, and `c` is f·f − radius².
     Sphere { f: V, square: N, c: N },
     /// A triangle: its vertices, and its normal n. `height` is n·(p − eye) for a point p of the
-    /// triangle; it is 0 if the eye lies in the triangle's plane. `scale` bounds the magnitude of
-    /// the terms from which signed areas are computed; a far smaller area is treated as 0.
+    /// triangle; it is 0 if the eye lies in the triangle's plane. `scale` is the vertices' part of
+    /// an upper bound of the terms from which signed areas are computed. An area that is far
+    /// smaller than this bound is treated as 0.
     Triangle {
         vertices: Box<[V; 3]>,
         normal: V,
         height: N,
         scale: N,
     },
-    /// A box: its least corner minus the eye, and its greatest corner minus the eye.
+    /// A box: the vectors from the eye to its least corner and to its greatest corner.
     Box { lo: V, hi: V },
     /// A checkerboard: its height above the eye, and the side of a square.
     Checkerboard { height: N, square: N },
@@ -221,8 +222,8 @@ impl Oracle {
         }
         let root = discriminant.sqrt();
         let roots = [(-&b - &root) / &a, (-&b + &root) / &a];
-        // If the eye is on the sphere's surface, the true t of one root is 0. Because of rounding
-        // errors, its computed value may differ from 0, so this root is left out.
+        // If the eye is on the sphere's surface, one root is t = 0. Because of rounding errors, its
+        // computed value may differ from 0, so this root is left out.
         if self.sign(c, square) == Ordering::Equal {
             let is_ahead = self.sign(&-&b, &square.sqrt()) == Ordering::Greater;
             return roots.into_iter().skip(1).filter(|_| is_ahead).collect();
@@ -254,8 +255,8 @@ impl Oracle {
 
     /// Intersects the ray with the direction `r` from the eye with a box. A box is the intersection
     /// of three slabs, each between two parallel planes. The ray's line is inside of the box from
-    /// the greatest t at which it enters a slab to the least t at which it leaves one. Returns
-    /// those of these two numbers that are positive. The list is empty if the ray misses the box.
+    /// the greatest t at which it enters a slab to the least t at which it leaves one. Returns the
+    /// positive ones of these two t. The list is empty if the ray misses the box.
     fn cuboid(&self, lo: &V, hi: &V, r: &V) -> Vec<N> {
         let is_parallel = |axis: &usize| self.sign(&r[*axis], &size(r)) == Ordering::Equal;
         let (parallel, across): (Vec<_>, Vec<_>) = (0..3).partition(is_parallel);

@@ -123,7 +123,7 @@ pub fn length(a: &V) -> N {
 }
 
 /// Returns the sum of the absolute values of a vector's components, an upper bound of the vector's
-/// length. It serves as the scale by which rounding errors are recognized.
+/// length. [`Number::sign`] treats numbers that are tiny compared with this sum as 0.
 pub fn size(a: &V) -> N {
     abs(&a[0]) + abs(&a[1]) + abs(&a[2])
 }

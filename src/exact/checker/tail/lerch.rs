@@ -7,7 +7,7 @@ use super::super::special::{Complex, integrals};
 
 /// Angle |θ|, in radians, below which [`rest_of_pole`] uses a Taylor series, because its closed
 /// formula loses digits by cancellation. With this value, the first omitted term, θ⁹/47900160, is
-/// 100 unit roundoffs; the Lerch series, to which it contributes, may have an error of 500.
+/// about 100 unit roundoffs. The error bound of the Lerch series allows for 500 unit roundoffs.
 const NEAR_POLE: f64 = 0.2;
 
 /// Computes the Lerch series Σ_j e^(iθj)·(w + j)^(−s), j = 0, 1, 2, … for s = 3, 4 and 5. θ is
@@ -15,8 +15,8 @@ const NEAR_POLE: f64 = 0.2;
 /// most 0.04·s·(s + 1)·w^(−s−2).
 pub(super) fn lerch(theta: f64, rotation: Complex, w: f64) -> [Complex; 3] {
     // The series is also an integral (`tail`), whose integrand is the sum of a pole and a regular
-    // function. The pole gives an exponential integral; of the regular function, the first two
-    // Taylor terms are used (`rest_of_pole`).
+    // function. The pole gives an exponential integral. The regular function is replaced by its
+    // first two Taylor terms (`rest_of_pole`).
     let (r, slope) = rest_of_pole(theta, rotation);
     let h = integrals(theta * w);
     let u = 1.0 / w;
@@ -77,8 +77,8 @@ mod tests {
                 let (r, slope) = rest_of_pole(sign * theta, rotation);
                 let errors = [(sign * r, &expected[0]), (slope, &expected[1])]
                     .map(|(x, expected)| (number.exact(x) - expected).to_f64().value().abs());
-                // The first terms that the two series omit, at the largest angle at which the
-                // series are used. The factor 1.5 covers later terms and roundings.
+                // The first omitted terms of the two series are θ⁹/47900160 and 9·θ⁸/47900160. They
+                // are largest at `NEAR_POLE`. The factor 1.5 covers later terms and roundings.
                 let omitted = 1.5 * libm::pow(NEAR_POLE, 8.0) / 47_900_160.0;
                 assert!(errors[0] <= NEAR_POLE * omitted, "{theta}: {errors:?}");
                 assert!(errors[1] <= 9.0 * omitted, "{theta}: {errors:?}");

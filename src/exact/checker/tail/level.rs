@@ -13,13 +13,13 @@ use crate::math::{Double, Real};
 
 /// Maximum truncation error of a sum over an edge's crossings, as a fraction of the pixel's
 /// tolerance, if the depth less than doubles along the edge. A thousandth hardly adds to the
-/// pixel's error. If the fraction [`LATER_TERMS_SHARE`] of the edge's own tolerance is greater, the
-/// maximum is that fraction instead.
+/// pixel's error. The maximum is never less than the fraction [`LATER_TERMS_SHARE`] of the edge's
+/// own tolerance.
 const LEVEL_TRUNCATION: f64 = 1e-3;
 /// Minimum ratio of the depth in the middle of an edge to the change of the depth along the edge,
-/// at which the depth is treated as constant. This approximation adds at most 4/STEADY, about 1e-6,
-/// of the sum of the absolute terms to the error bound. Measured: with 7.5e5 or 1.2e7, no bound
-/// changes.
+/// at which the depth is treated as constant. This approximation adds at most the fraction
+/// 4/`STEADY`, about 1e-6, of the sum of the terms' absolute values to the error bound. Measured:
+/// with 7.5e5 or 1.2e7, no bound changes.
 const STEADY: f64 = 3e6;
 
 /// Computes the alternating sum Σ (−1)^j·X over the crossings j of an edge along which the depth
@@ -47,8 +47,8 @@ pub(super) fn sum(
     };
 
     let step = all.alternating_step();
-    // e^(iφ) at two places: at the first crossing, and where the next crossing after the last one
-    // would be. φ is the phase of mode 1 there.
+    // e^(iφ) at the first crossing, and at the position of a crossing that would follow the last. φ
+    // is the phase of mode 1 there.
     let ends = [Double::from_f64(0.0), all.count].map(|j| cis(all.reduced_at(&j).hi * PI));
     let rotations = ends.map(square);
     let mut phases = ends;
@@ -86,12 +86,13 @@ pub(super) fn sum(
     let later: f64 = (MODE_TERMS + 1..=series.terms)
         .map(|k| lines * series.size(k, all.depth))
         .sum();
-    // In a steady sum, m^−s is replaced by its value in the middle of the edge. Here m is the
-    // depth, and s is 3, 4 or 5. The relative error is at most s·gN/2m, where N is the number of
+    // If the depth m is treated as constant, m^−s is replaced by its value in the middle of the
+    // edge, where s is 3, 4 or 5. The relative error is at most s·gN/2m, where N is the number of
     // crossings, and g is the change of m from one crossing to the next.
     //
-    // Otherwise, two Lerch series are used. Relative to its first term, each has a rounding error
-    // of about 500·w/2 roundings and a truncation error of at most 0.04·s·(s + 1)/w².
+    // Otherwise, the sum is a difference of two Lerch series. Relative to its first term, each
+    // series has a rounding error of about 500·w/2 unit roundoffs and a truncation error of at most
+    // 0.04·s·(s + 1)/w².
     let model = if is_steady {
         4.0 / STEADY
     } else {
@@ -170,8 +171,8 @@ mod tests {
     #[test]
     fn geometric_sums() {
         for theta in [0.0, 1e-9, -1e-3, 0.7, 3.0, -PI] {
-            // The tolerance allows for the errors of the direct sum: its angles have errors of up
-            // to 1000·3·2⁻⁵³.
+            // The tolerance covers the errors of the direct sum, whose angles have errors of up to
+            // 1000·3·2⁻⁵³.
             close(
                 geometric(theta, 1000.0, places(theta, 1000.0)),
                 one_by_one(theta, f64::INFINITY, 1000.0, 3),

@@ -24,16 +24,17 @@
 //! V_s(θ) = ∫ x^(s−1)·e^(−wx)/(1 − e^(iθ−x)) dx/Γ(s).
 //!
 //! The pole at x = iθ contributes w^(1−s)·e^z·E_s(z), z = −iθw, an exponential integral (DLMF
-//! 8.19). What remains is the regular function R(ζ) = 1/(1 − e^(−ζ)) − 1/ζ. Its Taylor series about
-//! ζ = −iθ contributes w^(−s)·(R + R′·s/w + …), term by term. At θ = 0, the direction of a diagonal
-//! of the board, this is the Euler–Maclaurin sum; at θ = π, it is Boole's sum.
+//! 8.19). The rest of the integrand contains the regular function R(ζ) = 1/(1 − e^(−ζ)) − 1/ζ. Its
+//! Taylor series about ζ = −iθ contributes w^(−s)·(R + R′·s/w + …), term by term. At θ = 0, the
+//! direction of a diagonal of the board, this is the Euler–Maclaurin sum; at θ = π, it is Boole's
+//! sum.
 //!
 //! If m at least doubles along the edge, the first crossings are added one by one, and the Fourier
 //! modes give the sum over the remaining crossings ([`receding`]).
 //!
 //! If m less than doubles along the edge's N crossings, the n-th mode is at most n^−3 of the sum of
 //! all absolute terms, so that a few hundred modes are enough. The sum of a mode over j is then the
-//! difference of two Lerch series, of which the second starts at the edge's end. If m is
+//! difference of two Lerch series, one from the edge's start and one from its end. If m is
 //! practically constant, the sum is geometric ([`level`]).
 
 mod lerch;
@@ -49,9 +50,9 @@ use super::special::Complex;
 use crate::math::{Double, Real};
 
 /// Number of terms of an edge's series ([`EdgeSeries`]), counted from the first, whose sums over
-/// the edge's crossings are computed by Fourier modes. The error bound includes the later terms,
-/// which fall with a higher power of the depth. Along an edge that recedes from the eye, the first
-/// crossings are added one by one, with all terms, until this error is small enough.
+/// the edge's crossings are computed by Fourier modes. The later terms decrease faster with the
+/// depth, and a bound of their sum is added to the error. Along an edge that recedes from the eye,
+/// the first crossings are added one by one, with all terms, until this error is small enough.
 const MODE_TERMS: usize = 3;
 
 /// Maximum number of crossings of an edge at which all of them are added one by one, without trying
@@ -63,12 +64,13 @@ const MAX_DIRECT: f64 = 20_000.0;
 /// the remaining crossings or modes is added to the error. Adding 300,000 crossings or modes takes
 /// a few milliseconds.
 const MAX_TERMS_ADDED: f64 = 300_000.0;
-/// Fraction of an edge's tolerance up to which the sum over the edge's crossings is neglected: it
-/// is treated as 0, and its upper bound is added to the error. Skipped Fourier modes may use up the
-/// same fraction. The fractions of all kinds of errors must add up to less than 1.
+/// Fraction of an edge's tolerance. If the sum over the edge's crossings is certainly smaller, it
+/// is neglected: it is treated as 0, and its upper bound is added to the error. Skipped Fourier
+/// modes may use up the same fraction. The fractions of all kinds of errors must add up to less
+/// than 1.
 const SKIPPED_SHARE: f64 = 0.25;
-/// Fraction of an edge's tolerance that may be used up by leaving out terms of the edge's series
-/// ([`EdgeSeries`]): those that are not summed by Fourier modes. Not critical: with 0.0125 or 0.2,
+/// Fraction of an edge's tolerance that may be used up by leaving out those terms of the edge's
+/// series ([`EdgeSeries`]) that are not summed by Fourier modes. Not critical: with 0.0125 or 0.2,
 /// the measured running time changes by less than 10 %.
 const LATER_TERMS_SHARE: f64 = 0.05;
 /// Approximate time to add one crossing directly, in units of about 50 ns. It is charged to the
@@ -76,9 +78,9 @@ const LATER_TERMS_SHARE: f64 = 0.05;
 /// too long.
 const CROSSING_WORK: f64 = 1.0 / 16.0;
 /// Half of the approximate time to compute one Fourier mode, in units of about 50 ns. The work
-/// charged to the pixel's budget is this time multiplied by the number n of the last mode. It is
-/// half of a mode's time, because only the odd numbers up to n have modes. A rough value is enough,
-/// because the budget only stops computations that take too long.
+/// charged to the pixel's budget is this time multiplied by the number n of the last mode. There
+/// are only n/2 modes, because their numbers are odd. A rough value is enough, because the budget
+/// only stops computations that take too long.
 const MODE_WORK: f64 = 1.0 / 4.0;
 
 /// Computes the alternating sum Σ (−1)^j·X over all crossings j of an edge with lines of the board.
@@ -106,9 +108,9 @@ pub(super) fn sum(
         return unknown;
     }
     if all.rise * lines < all.depth {
-        // The depth less than doubles between the edge's ends. A sum from one end to infinity would
-        // extend to much greater depths than the edge, and its Fourier modes would decay too
-        // slowly. `level` sums only between the two ends.
+        // The depth less than doubles between the edge's ends. The sums from its ends to infinity
+        // (`receding`) would extend to much greater depths than the edge, and their Fourier modes
+        // would decay too slowly. `level` uses the modes of the sum between the two ends.
         let sum = level::sum(all, series, trivial, tolerance, budget);
         if sum.bound > tolerance && lines <= MAX_TERMS_ADDED {
             return one_by_one(lines).unwrap_or(sum);
@@ -158,8 +160,8 @@ fn amplitudes(series: &EdgeSeries, first: f64, next: impl Fn(f64) -> f64) -> [f6
 
 /// Returns the number of the last Fourier mode to compute, and a bound on the sum of all later
 /// modes. `size` must be such that mode n is at most `size`·n^−3. The later modes add up to less
-/// than a quarter of `limit`, except if the number is limited by [`MAX_TERMS_ADDED`]. Returns
-/// `None` if the bound is not less than `trivial`, or if the budget is too small for the modes.
+/// than a quarter of `limit`, unless [`MAX_TERMS_ADDED`] limits the number. Returns `None` if the
+/// bound is not less than `trivial`, or if the budget is too small for the modes.
 fn last_mode(size: f64, limit: f64, trivial: f64, budget: &PixelBudget) -> Option<(f64, f64)> {
     // The sum of n^−3 over the odd n beyond an integer Q is at most 1/(4Q²). Here, Q is `last` − 1.
     let last = ((size / limit).sqrt().ceil() + 1.0).clamp(3.0, MAX_TERMS_ADDED);

@@ -18,27 +18,27 @@ use crate::math::Double;
 /// measured as 12 ns and 3 ns. Their ratio decides after how many crossings the Fourier modes take
 /// over.
 const MODE_COST: f64 = 4.0;
-/// Number n up to which each Fourier mode is computed; a later mode is skipped if its bound is
+/// Number n up to which every Fourier mode is computed. A later mode is skipped if its bound is
 /// small. Measured: with 7, a picture of a horizon takes up to 20 % longer; with 123, it does not
 /// become faster.
 const FIRST_MODES: f64 = 31.0;
-/// Fraction of an edge's tolerance that may be used up by leaving out all Fourier modes beyond the
-/// last computed one. The tolerance is divided among several kinds of errors. This kind gets the
-/// largest fraction, because a smaller one would need more modes.
+/// Fraction of an edge's tolerance that may be used up by leaving out all Fourier modes after the
+/// last computed mode. The tolerance is divided among several kinds of errors. This kind gets the
+/// largest fraction, because with a smaller fraction more modes would have to be computed.
 const BEYOND_LAST_SHARE: f64 = 0.6;
 /// Fraction of an edge's tolerance that may be used up by truncating the Lerch series ([`lerch`])
 /// in the first term of the edge's series ([`EdgeSeries`]). Not critical: with 0.005 or 0.08, the
 /// measured running time changes by less than 10 %.
 const LERCH_SHARE: f64 = 0.02;
-/// Minimum of w, the depth divided by its step from crossing to crossing, at which the Lerch series
-/// of exponents s = 3 to 5 ([`lerch`]) is expanded in 1/w. Each term of the expansion is then at
-/// most about s/w < 1/3 times the previous term.
+/// Minimum of w at which the Lerch series of the exponents s = 3 to 5 ([`lerch`]) are expanded in
+/// 1/w. Here, w is the depth divided by its change from one crossing to the next. With this
+/// minimum, each term of the expansion is at most about s/w < 1/3 times the previous term.
 const MIN_W: f64 = 16.0;
 /// Angle |θ| of a Fourier mode, in radians, below which |1 − e^iθ|² = 2 − 2·cos θ is replaced by a
-/// lower bound in θ², because the subtraction cancels most digits there.
+/// lower bound proportional to θ². For such small angles, most digits of the difference cancel.
 const SMALL_ANGLE: f64 = 0.2;
-/// Lower bound on (2 − 2·cos θ)/θ² for |θ| < `SMALL_ANGLE`, which replaces the ratio there. The
-/// ratio differs from 1 by at most θ²/12, a third of a percent.
+/// Lower bound of (2 − 2·cos θ)/θ² for |θ| < `SMALL_ANGLE`. The quotient differs from 1 by at most
+/// θ²/12, a third of a percent.
 const MIN_SQUARE_RATIO: f64 = 0.99;
 
 /// Returns the depth at which the sum over an edge's crossings changes its method: crossings at a
@@ -53,16 +53,15 @@ pub(super) fn start(all: &LineCrossings, series: &EdgeSeries, tolerance: f64) ->
     let kappa =
         (factor * 4.0 / (PI * PI * PI) / (2.0 * g) / (4.0 * BEYOND_LAST_SHARE * tolerance)).sqrt();
     let cheapest = (0.5 * MODE_COST * kappa * g).sqrt();
-    // From the depth `nothing` on, the rest of the sum is usually negligible (`SKIPPED_SHARE`).
-    // Half of that fraction of the tolerance is reserved for the first terms of the edge's series
-    // ([`EdgeSeries`]) at all crossings from this depth on. At the depth m, the first term is at
-    // most `factor`·½/π·m^−3.
+    // From the depth `nothing` on, the rest of the sum is usually negligible: less than the
+    // fraction `SKIPPED_SHARE` of the tolerance. Half of this fraction is reserved for the first
+    // terms of the edge's series ([`EdgeSeries`]) at all these crossings. At the depth m, the first
+    // term is at most `factor`·½/π·m^−3.
     let nothing = (factor * 0.25 / PI / g / (0.5 * SKIPPED_SHARE * tolerance)).sqrt() + g;
-    // Depths `steep` and `fourth`, each of which keeps an error within its fraction of the
-    // tolerance. Both errors are proportional to m^−5, where m is the depth. At `steep`, the error
-    // is the truncation error of a Fourier mode. At `fourth`, it is the sum of the terms of the
-    // series X from the fourth term on, which are not summed by modes. The factor of the fourth
-    // term is 0 if X has fewer terms.
+    // Two errors decrease with the depth m like m^−5. From the depth `steep` on, the truncation
+    // error of the Fourier modes is within its fraction of the tolerance. From the depth `fourth`
+    // on, the sum of the fourth and all later terms of the series X, which are not summed by modes,
+    // is within its fraction. The factor of the fourth term is 0 if X has fewer terms.
     let steep = g * libm::pow(factor / (g * g * g) / (LERCH_SHARE * tolerance), 0.2);
     let fourth = series.factors[4].abs() / (10.0 * PI * PI * PI * PI * g);
     let fourth = libm::pow(fourth / (LATER_TERMS_SHARE * tolerance), 0.2);
@@ -92,8 +91,8 @@ pub(super) fn sum_from(
         return BoundedSum::zero_within(trivial);
     }
     let w = depth / g;
-    // Term k of the series falls with the depth as w^(−2−k). The amplitudes do not contain this
-    // factor, because the sums over crossings contain it.
+    // Term k of the series is proportional to w^(−2−k). The amplitudes do not contain this factor,
+    // because the sums over crossings contain it.
     let amplitudes = amplitudes(series, 4.0 / (PI * PI * PI) / (g * g * g), |a| a / (PI * g));
     let [first, second, third] = amplitudes.map(f64::abs);
     let u = 1.0 / w;
@@ -111,8 +110,8 @@ pub(super) fn sum_from(
     let Some((last, beyond)) = last_mode(largest, limit, trivial, budget) else {
         return BoundedSum::zero_within(trivial);
     };
-    // By Abel's inequality, the Lerch series V_3 is at most 2·w^−3/|1 − e^iθ|. Beyond
-    // `FIRST_MODES`, mode n is skipped if this bound is below an allowance that falls as n^−2.
+    // By Abel's inequality, the Lerch series V_3 is at most 2·w^−3/|1 − e^iθ|. After `FIRST_MODES`,
+    // mode n is skipped if this bound is below an allowance proportional to n^−2.
     let allowance = skipped * 2.0 * (FIRST_MODES - 1.0);
     let threshold = 2.0 * first * all_terms * u3 / allowance;
     let threshold = threshold * threshold;
@@ -141,14 +140,14 @@ pub(super) fn sum_from(
     }
     // The expansion of the Lerch series V_s stops before the term with the second derivative of the
     // regular function R (`tail`). For |θ| ≤ π, |R″|/2 ≤ 0.04, so that the truncation error of V_s
-    // is at most 0.04·s·(s + 1)·w^(−s−2). Mode n has a factor n^−3 at most, and the sum over the
-    // odd n is Σ n^−3 < 1.06.
+    // is at most 0.04·s·(s + 1)·w^(−s−2). Mode n has a factor of at most n^−3, and the sum of n^−3
+    // over the odd n is less than 1.06.
     let curvature = 1.06 * 0.04 * u2 * u3 * (12.0 * first + 20.0 * second * u + 30.0 * third * u2);
     let later = bound_of(MODE_TERMS + 1..=series.terms);
-    // The exponential integral F_3 has an error of up to 1e-14, or 90 roundings. F_5 has one of up
-    // to 1e-13, but its factor is smaller by the square of the depth. The error of a Lerch series
-    // V_s is less than 500 roundings, relative to w^−2. In mode n, the rotation of the phase adds n
-    // roundings.
+    // The exponential integral F_3 has an error of up to 1e-14, or 90 unit roundoffs. F_5 has an
+    // error of up to 1e-13, but it is divided by the square of the depth. The error of a Lerch
+    // series V_s is less than 500 roundings, relative to w^−2. In mode n, the rotation of the phase
+    // adds n roundings.
     let rounding = 1000.0 * UNIT * first * all_terms * u2;
     BoundedSum {
         value,

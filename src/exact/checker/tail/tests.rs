@@ -49,8 +49,10 @@ impl Edge {
     }
 }
 
-/// Edges of any direction: `lines` crossings, along which the depth grows by the factor `growth`.
-/// The sum of the terms' absolute values over an edge's crossings is at most about `size`.
+/// Edges of any direction with `lines` crossings. Along an edge, the depth increases by `growth`
+/// times its value at the first crossing. If `lines` is infinite, the depth increases by `growth`
+/// from one crossing to the next. The sum of the terms' absolute values over an edge's crossings is
+/// at most about `size`.
 fn edges(
     lines: impl Strategy<Value = f64>,
     growth: impl Strategy<Value = f64>,

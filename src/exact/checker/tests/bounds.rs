@@ -14,7 +14,7 @@ use crate::reference::{
     tightness::Tightness,
 };
 
-/// Errors found, grouped by the method with which [`Homography::over`] computes the integral.
+/// Errors found, grouped by the method by which [`Homography::over`] computes the integral.
 #[derive(Default)]
 struct Found {
     few: Tightness,
@@ -23,8 +23,8 @@ struct Found {
     far: Tightness,
 }
 
-/// Returns a board whose forms become those of `board` if they are rounded. The roundings of the
-/// forms' factors are chosen to increase the integral over the pixel as much as possible.
+/// Returns a board whose forms differ from those of `board` by rounding errors. Each factor is
+/// changed by a unit roundoff, in the direction that increases the integral over the pixel.
 fn worst(board: &Homography) -> ExactBoard {
     let [a, b] = board.across;
     let forms = [a, b, board.below];
@@ -138,9 +138,9 @@ fn a_square_that_goes_to_the_horizon_is_known() {
         let board = view.board();
         let BoundedSum { value, bound } = board.alone(&PIXEL);
         assert!(bound < 1e-9, "{bound} of {view:?}");
-        // A little more than half of the pixel, 0.51, shows the floor. The eye is above one square,
-        // at least 0.3 squares away from all others, so nearly all of the visible floor is this
-        // square.
+        // A little more than half of the pixel, 0.51, shows the floor. The eye is above one square
+        // and at least 0.3 squares away from all others. This square therefore fills nearly all of
+        // the visible floor.
         let others = view.focal * view.height / 0.3;
         let is_one = (value - 0.51).abs() <= bound + 2.0 * others;
         assert!(is_one, "{value} of {view:?}");

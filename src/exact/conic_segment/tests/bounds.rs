@@ -32,7 +32,8 @@ impl ExactArc {
         }
     }
 
-    /// Evaluates the curve's polar form, as a point in homogeneous coordinates.
+    /// Evaluates the curve's polar form (blossom) at the parameters `s` and `t`, as a point in
+    /// homogeneous coordinates.
     fn blossom(&self, s: &N, t: &N) -> [N; 3] {
         let one = NUMBER.exact(1.0);
         let [u, v] = [s, t].map(|t| &one - t);
@@ -53,9 +54,9 @@ impl ExactArc {
         }
     }
 
-    /// Returns the area between the arc and its chord. In each of 60 rounds, all arcs are halved,
-    /// each at the point where its tangent is parallel to its chord. A halving brings the weight
-    /// nearer to 1, the weight of a parabola.
+    /// Returns the area between the arc and its chord. The arc is halved, then its halves, and so
+    /// on for 60 rounds. Each arc is cut where its tangent is parallel to its chord. This brings
+    /// the weight nearer to 1, the weight of a parabola.
     fn area(&self) -> N {
         let (mut share, mut scale, mut weight) =
             (NUMBER.exact(0.0), NUMBER.exact(1.0), self.weight.clone());
@@ -181,9 +182,10 @@ fn errors_of_segments_are_within_tight_bounds() {
                 let (by, roundings) = if board.square_of(&arc).is_some() {
                     (&mut found.one_square, 1)
                 } else if span <= MAX_LINES {
-                    // Each line that crosses the arc contributes three roundings: those of its two
-                    // parameters, and that of the area of a piece. Each family has one line more
-                    // than the difference between the numbers of its first and its last.
+                    // Each line that crosses the arc contributes three roundings: two for the
+                    // parameters of its crossings, and one for the area of a piece. The number of
+                    // lines in a family is the number of the last line minus that of the first,
+                    // plus 1.
                     (&mut found.cut, 3 * (span as usize + 2))
                 } else {
                     (&mut found.halved, 1)
