@@ -103,7 +103,7 @@ impl AsBytes for [u8; 3] {
     }
 }
 
-/// Error: the number of pixels in a list is not that of the picture, or is 0.
+/// Error: a list does not have one pixel for each pixel of a picture, or is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("{count} pixels do not make a picture of {width} × {height}")]
 pub struct WrongPixelCount {

@@ -237,9 +237,9 @@ fn line_of<T: Real>(linear: &Linear<T>) -> Boundary {
     line(&factors, linear[0].rad + linear[1].rad + linear[2].rad)
 }
 
-/// Returns the line on which a linear form is zero. The form is divided by its greater slope.
-/// Different forms that are zero on the same line, such as the horizon of parallel planes,
-/// therefore get equal factors.
+/// Returns the line on which a linear form is zero. The form is divided by its greater slope, i.e.
+/// factor of x or y. Different forms that are zero on the same line, such as the horizon of
+/// parallel planes, therefore get equal factors.
 fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let [a, b, _] = factors;
     let greatest = if a.magnitude() < b.magnitude() { b } else { a };
@@ -318,9 +318,9 @@ impl Conic {
         // - In any case, 4 · 2 · √(ε/(greatest |F|)), by the inequality of Brudnyi and Ganzburg
         //   (1973) for polynomials of degree 2 on a convex set of area 1 in the plane.
         //
-        // In the last bound, the greatest |F| is at least 1/16. The reason is that some factor is
-        // at least 1/2, and that a factor is at most 8 times the greatest |F|. For example, A is a
-        // combination of three values of F with weights of the magnitudes 2, 4 and 2.
+        // In the last bound, the greatest |F| is at least 1/16: some factor is at least 1/2, and
+        // each factor is at most 8 times the greatest |F|. For example, A is a combination of three
+        // values of F with weights of the magnitudes 2, 4 and 2.
         let [a, b, c, d, e, _] = self.factors.map(|factor| factor.hi);
         let turn = libm::hypot(a.abs() + b.abs(), b.abs() + c.abs());
         let gradient = 2.0 * (libm::hypot(d, e) - 0.5 * turn);

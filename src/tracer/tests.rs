@@ -344,7 +344,7 @@ fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
 #[test]
 fn very_many_objects() {
     // There are enough objects for several threads to prepare them. Half of the objects are spread
-    // over the whole picture, and half lie in one place.
+    // over the whole picture, and half lie in a cluster far smaller than a pixel.
     let mut random = SceneGenerator::new(1);
     let eye = DVec3::ZERO;
     let mut stage = scene(camera(eye, dvec3(0.0, 0.0, -1.0)), &[sphere(eye, 1.0)]);

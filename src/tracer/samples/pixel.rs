@@ -107,8 +107,8 @@ pub(super) enum Depth {
     },
 }
 
-/// Values of the samples of a chunk, with one array for each quantity. They are aligned, because
-/// numbers that are stored across two cache lines are loaded late.
+/// Values of the samples of a chunk, with one array for each quantity. The arrays are aligned,
+/// because loading vectors that cross a cache line takes longer.
 #[derive(Debug)]
 #[repr(align(64))]
 pub(super) struct Lanes {
