@@ -30,8 +30,8 @@ const MAX_THREADS: usize = 1024;
 /// it affects only running times, never results.
 static LIMIT: AtomicUsize = AtomicUsize::new(0);
 
-/// Number of processors of the machine that this process may use. It is stored because asking the
-/// system takes longer than rendering a small picture.
+/// Number of processors that this process may use. It is stored because asking the system takes
+/// longer than rendering a small picture.
 static PROCESSORS: LazyLock<usize> =
     LazyLock::new(|| thread::available_parallelism().map_or(1, NonZero::get));
 
@@ -60,9 +60,9 @@ pub(crate) enum Threads {
 }
 
 impl Threads {
-    /// Starts a pool of `threads` threads, or of `available()` threads if `threads` is `None`.
-    /// Returns the caller's own pool instead if it has this size, or if the system cannot start
-    /// threads.
+    /// Starts a pool of `threads` threads, or of `available()` threads if `threads` is `None`. If
+    /// the caller already runs in a pool of this size, returns that pool instead. If the system
+    /// cannot start threads, work runs on the threads of the caller.
     ///
     /// # Errors
     ///

@@ -20,7 +20,7 @@ const STEPS: f64 = 255.0;
 const SLACK: f64 = 1e-5;
 
 /// Slope of the sRGB curve at black, where it is steepest, in steps of 8-bit sRGB per unit of
-/// linear light. It converts an error bound in linear light to one in steps.
+/// linear light. With this slope, an error bound in linear light is converted to steps.
 const STEEPEST: f64 = 12.92 * STEPS;
 
 /// Names of a pixel's channels, in the order in which a film stores them.

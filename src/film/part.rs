@@ -5,8 +5,8 @@ use crate::area::Area;
 
 /// Approximate maximum number of pixels that are compared in the search for a part's position,
 /// summed over all positions. At each position, 16 to 400 pixels are compared, or all pixels of a
-/// smaller part. A larger maximum makes the search slower. With a smaller one, fewer pixels are
-/// compared at each position, so that a wrong result is more likely.
+/// smaller part. A larger maximum makes the search slower. With a smaller maximum, fewer pixels are
+/// compared at each position, and a wrong result is more likely.
 const MAX_COMPARED: u64 = 100_000_000;
 
 /// Maximum squared colour difference at the best position, as a fraction of the mean over all

@@ -24,7 +24,7 @@ pub struct Recipe {
     /// The overrides of the scene's values, i.e. the `--set` arguments, in the order given by the
     /// user.
     pub overrides: Vec<String>,
-    /// The part of the picture that was rendered; `None` if all of it was rendered.
+    /// The part of the picture that was rendered; `None` if the whole picture was rendered.
     pub crop: Option<Area>,
     /// Numbers of columns and rows of the whole picture. `None` if the whole picture was rendered,
     /// or if its size is unknown.

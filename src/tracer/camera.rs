@@ -1,8 +1,8 @@
 //! The camera: from a sample point to a ray's direction.
 //!
-//! All rays share the eye, so the tracer works in the camera's own axes: right (u), down (−v) and
-//! ahead (−w). In these axes a ray's direction is r = (X, Y, Z), where X and Y are proportional to
-//! the distance in pixels from the picture's centre. Z is 1, except in the widest views, where a
+//! All rays start at the eye, so the tracer works in the camera's own axes: right (u), down (−v)
+//! and ahead (−w). In these axes a ray's direction is r = (X, Y, Z), where X and Y are proportional
+//! to the distance in pixels from the picture's centre. Z is 1, except in the widest views, where a
 //! power of two keeps X and Y within [−1, 1]. A point at λr has the depth λZ.
 
 use glam::{DVec2, DVec3};

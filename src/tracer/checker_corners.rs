@@ -47,7 +47,8 @@ const MAX_ERROR: f64 = 0.25;
 pub(super) const SIDE: usize = 32;
 
 /// Number of array entries for one row of pixel corners in a block. A block of 32 pixels has 33
-/// corners in a row, which are rounded up to whole vectors of eight.
+/// corners in a row. This number is rounded up to a multiple of eight, the length of the widest
+/// vectors.
 const LANES: usize = 40;
 
 /// The squares of a board in one pixel, derived from the squares at the pixel's corners.

@@ -1,4 +1,5 @@
-//! The curves that separate what is seen in a pixel, or in a part of one: lines and conics.
+//! The curves in a pixel, or in a part of one, on which the visible surface may change: lines and
+//! conics.
 //!
 //! In: the surfaces of objects in one precision, and a [`SubPixel`]. Out: the objects' silhouettes,
 //! and the curves where their depths are equal, in the coordinates of the sub-pixel.
@@ -21,7 +22,7 @@ use super::{camera::Camera, form::Form, interval::Interval, sphere::Sphere, sub_
 /// causes an error of three unit roundoffs.
 pub(crate) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
-/// A curve that separates what is seen in a pixel.
+/// A curve in a pixel on which the visible surface may change.
 #[derive(Clone, Debug)]
 pub enum Boundary {
     /// A line.

@@ -17,8 +17,8 @@ pub(super) const BACKGROUND: f64 = 0.0;
 /// Code, in [`Lanes::seen`], of an uncertain sample, which is traced again on its own.
 pub(super) const DOUBT: f64 = -1.0;
 
-/// The objects of one pixel, prepared for many samples. One value is reused for all pixels, to keep
-/// its allocations.
+/// The objects of one pixel, prepared for many samples. One instance is reused for all pixels, so
+/// that its lists need not be allocated again.
 #[derive(Debug, Default)]
 pub struct PreparedPixel {
     /// The objects that may be seen in the pixel.

@@ -29,8 +29,8 @@ const MAX_ERROR: f64 = 1e250;
 
 /// Maximum number of lines between squares in a pixel for which a sample's colour is found by
 /// testing on which side of each line the sample lies. With more lines, a division computes which
-/// square a sample hits. Measured: from 3 to 12, the render time does not change; with division
-/// alone, figure 9.9, the picture of the assignment, takes 11 % longer.
+/// square a sample hits. By measurement, values from 3 to 12 give equal render times. With division
+/// alone, figure 9.9 (the picture of the assignment) takes 11 % longer.
 const MAX_LINES: usize = 6;
 
 /// Error of a preparation that fails, so that the pixel's samples must be traced one by one.
