@@ -213,7 +213,7 @@ pub fn read_part(picture: &[u8]) -> Result<(Part, Option<Recipe>), NotOurs> {
     Ok((part, recipe))
 }
 
-/// The texts of a PNG file that Pinhole wrote. Those that are missing are `None`.
+/// The texts of a PNG file that Pinhole wrote. A text that is missing is `None`.
 #[derive(Default)]
 struct StoredTexts {
     scene: Option<String>,

@@ -418,7 +418,8 @@ impl<'b> PnmReader<'b> {
         self.bytes.get(self.at + 1..).unwrap_or_default()
     }
 
-    /// Returns the bytes after the header, if a line end follows it; otherwise `None`.
+    /// Returns the bytes after the header and its line end. Returns `None` if the header has no
+    /// line end.
     fn after_line_end(&self) -> Option<&'b [u8]> {
         let rest = self.bytes.get(self.at..)?;
         rest.strip_prefix(b"\r\n").or(rest.strip_prefix(b"\n"))

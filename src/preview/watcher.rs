@@ -150,7 +150,7 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
                 _ => {
                     next_look = since + POLL_INTERVAL;
                     if stamp(&self.path) == self.stamp {
-                        // Watch the current folders: a removed folder may exist again, or a link
+                        // The folders may have changed: a removed folder may exist again, or a link
                         // may have a new target.
                         self.follow();
                         continue;

@@ -48,8 +48,8 @@ impl Object<f64> {
         face: Option<u8>,
     ) -> (Self, Option<Extent>) {
         let (object, corners) = if let Shape::Triangle(shape) = shape {
-            // A triangle's bounds are computed from its corners, which its preparation returns as
-            // well.
+            // `triangle::prepare` also returns the corners, from which the triangle's bounds are
+            // computed.
             let (triangle, corners) = triangle::prepare(double, shape).unzip();
             (
                 Object::Convex(triangle.unwrap_or_else(Convex::nothing)),
@@ -173,7 +173,7 @@ fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
     if greatest < 0.0 {
         return Hull::Behind;
     }
-    // The condition is also true if an overflow has left NaN.
+    // NaN, which an overflow may have left, also makes the condition true.
     if !(least > SMALLEST && greatest >= least) {
         return Hull::Unbounded;
     }

@@ -110,7 +110,7 @@ pub struct Window<R> {
     pub x: R,
     /// Maximum of |Y|, where Y is the downward component of a ray's direction.
     pub y: R,
-    /// Z, the component ahead, which is the same for all rays.
+    /// The forward component Z of a ray's direction, which is the same for all rays.
     pub z: R,
 }
 

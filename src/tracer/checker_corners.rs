@@ -403,8 +403,8 @@ impl CheckerForms {
         }
     }
 
-    /// Returns the least value over the rectangle of the form `below`, the denominator of the
-    /// board's coordinates. Returns `None` if it is not clearly positive.
+    /// Returns the least value of the form `below` over the rectangle. This form is the denominator
+    /// of the board's coordinates. Returns `None` if the value is not clearly positive.
     fn least(&self) -> Option<f64> {
         let least = self.below.factors[2] - self.below.spread() * UP;
         (least > MIN_CLEARANCE * self.below.rad).then_some(least)

@@ -103,9 +103,10 @@ impl<T: Real> Checkerboard<T> {
         })
     }
 
-    /// Returns whether the square that the ray hits has the second colour, that is whether
-    /// floor(x/square) + floor(z/square) is odd. Returns a [`Doubt`] if rounding errors leave this
-    /// uncertain.
+    /// Returns whether the square that the ray hits has the second colour. This is so if
+    /// floor(x/square) + floor(z/square) is odd, where x and z are world coordinates of the
+    /// crossing, and `square` is the side of a square. Returns a [`Doubt`] if rounding errors leave
+    /// the colour uncertain.
     #[inline]
     pub fn is_odd(&self, r: &Direction<T>) -> Result<bool, Doubt> {
         let below = self.below.at(r);

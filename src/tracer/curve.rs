@@ -244,7 +244,7 @@ fn line_of<T: Real>(linear: &Linear<T>) -> Boundary {
 fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let [a, b, _] = factors;
     let greatest = if a.magnitude() < b.magnitude() { b } else { a };
-    // If the form has no slope, it is constant and has no zero line. It is then divided by 1.
+    // A form without a slope is constant, and is zero on no line. It is divided by 1 instead.
     let exponent = -greatest.magnitude().exponent();
     let greatest = greatest.scaled(exponent);
     let slope = if greatest.is_zero() {

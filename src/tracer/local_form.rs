@@ -166,7 +166,7 @@ impl LocalQuadratic {
     }
 
     /// Returns an interval that contains the form's values over the rectangle. It is the sum of the
-    /// ranges along each axis, widened by a bound of the mixed term.
+    /// ranges of the terms in x and of those in y, widened by a bound of the term in xy.
     pub fn range(&self) -> Interval {
         let [c, x, y, xx, xy, yy] = self.factors.map(|factor| 0.25 * factor);
         let c = 4.0 * c;

@@ -179,8 +179,8 @@ impl<T: Real> Sphere<T> {
             rad: r.square.magnitude() * (SPHERE_ROUNDINGS * T::UNIT) + T::TINY * 8.0,
             mid: r.square.clone(),
         };
-        // Close to the inner surface of a huge sphere, Q is much smaller than R² r·r. There, Q is
-        // computed more accurately as (c·r)² − (r·r) C.
+        // Close to the inner surface of a huge sphere, Q is much smaller than R² r·r (letters as in
+        // `Sphere`). There, Q is computed more accurately as (c·r)² − (r·r) C.
         let other = b * b - &self.power * &square;
         let root = if other.rad < q.rad { &other } else { q }.sqrt();
         let inverse = if b.mid.is_negative() {

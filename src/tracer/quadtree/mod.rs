@@ -26,7 +26,7 @@ use super::{camera::Direction, local_form::Patch};
 pub use self::grid::{BoundedObject, CellGrid, Nearness, Rectangle};
 pub use self::tree::OBJECTS_A_CELL;
 
-/// The visible objects, by their bounds in the view plane.
+/// Quadtree over the bounds, in the view plane, of all objects that rays may hit.
 #[derive(Debug)]
 pub struct Quadtree {
     grid: CellGrid,
