@@ -300,10 +300,10 @@ impl BoardBlock {
         })
     }
 
-    /// Replaces the index of each uncertain square (NaN) in `corners` by the index that follows
-    /// from the corner's computed position. Returns the squares. Also returns, for x and z, an
-    /// upper bound of the distance, in squares, between an uncertain corner and the nearest line
-    /// between squares; 0 if no corner is uncertain. Returns `None` if a quotient is not finite.
+    /// Replaces each uncertain index (NaN) in `corners` by the index of the square at the corner's
+    /// computed position, and returns all indices. Also returns, for x and z, an upper bound of the
+    /// distance, in squares, from an uncertain corner to the nearest line between squares; 0 if no
+    /// corner is uncertain. Returns `None` if a quotient is not finite.
     #[cold]
     fn probable(
         &self,
@@ -360,8 +360,8 @@ fn corners_simd(board_block: &BoardBlock, y: f64, length: usize, out: &mut Corne
     board_block.evaluate(y, length, out);
 }
 
-/// Writes to `out`, for each pixel of a row, the parity sign (1 or −1) of its square if all its
-/// corners lie in one square, and 0 otherwise.
+/// Compares the squares at the four corners of each pixel of a row. If they are certain and equal,
+/// writes their `sign` (1 or −1) to `out`; otherwise, writes 0.
 #[multiversion(targets(
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",

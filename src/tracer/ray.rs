@@ -32,7 +32,7 @@ pub struct Hit {
     pub point: DVec3,
     /// The colour at the point.
     pub color: Color,
-    /// Whether this crossing is the one that is seen in the picture.
+    /// Whether the picture shows this crossing.
     pub visible: bool,
 }
 

@@ -330,8 +330,8 @@ impl Sphere<f64> {
 
     /// Returns the factor 1/C in the inverse depth (c·r + √Q)/C of the sphere's near side
     /// ([`Sphere`]), in the world's unit, and a bound on the factor's relative error. Returns
-    /// `None` if the eye is not outside, or if the relative error of C is 1/4 or more. Below 1/4,
-    /// the relative error of 1/C is at most twice that of C.
+    /// `None` if the eye is not outside the sphere, or if the relative error of C is 1/4 or more.
+    /// Below 1/4, the relative error of 1/C is at most twice that of C.
     pub fn depth_factor(&self) -> Option<(f64, f64)> {
         let error = self.power.rad / self.power.size() + SPHERE_ROUNDINGS * f64::UNIT;
         (self.is_outside() && error < 0.25).then(|| (self.scale / self.power.mid, 2.0 * error))

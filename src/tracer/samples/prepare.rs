@@ -291,8 +291,8 @@ impl PreparedPixel {
         for plane in &self.planes {
             rad = rad.max(plane.rad);
         }
-        // `apart` covers the errors of both inverse depths that are compared. `rad` includes the
-        // rounding of the comparison.
+        // A comparison of two inverse depths is wrong by at most the errors of both, 2 · `rad`.
+        // `rad` includes the rounding error of the comparison.
         let apart = 2.0 * rad * UP;
         if !apart.is_finite() {
             return Err(Hard);
