@@ -55,8 +55,8 @@ impl Area {
             && other.rows().start < self.rows().end
     }
 
-    /// Returns the smallest area that contains both areas. If its width or height would exceed
-    /// `u32::MAX`, returns `u32::MAX` instead.
+    /// Returns the smallest area that contains both areas. Its width and height are limited to
+    /// `u32::MAX`.
     pub fn with(self, other: Self) -> Self {
         let (x, y) = (self.x.min(other.x), self.y.min(other.y));
         let length = |end: u64, other_end: u64, start: u32| {
