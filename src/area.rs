@@ -5,9 +5,9 @@ use std::{fmt, str::FromStr};
 /// A rectangle of pixels. Columns and rows are counted from the picture's top left corner.
 ///
 /// [`lies_in`](Self::lies_in), [`meets`](Self::meets), [`common`](Self::common) and
-/// [`with`](Self::with) work for any numbers. The other methods require that the sums `x + width`
-/// and `y + height` fit into a `u32`, as those of every part of a picture do; otherwise they may
-/// panic or return wrong areas.
+/// [`with`](Self::with) work for any numbers. The other methods may panic or return wrong areas if
+/// `x + width` or `y + height` exceeds `u32::MAX`. In every part of a picture, these sums are
+/// smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Area {
     /// Leftmost column.
@@ -55,8 +55,8 @@ impl Area {
             && other.rows().start < self.rows().end
     }
 
-    /// Returns the smallest area that contains both areas. A side that would be longer than
-    /// `u32::MAX` is `u32::MAX`.
+    /// Returns the smallest area that contains both areas. Its width and height are limited to
+    /// `u32::MAX`.
     pub fn with(self, other: Self) -> Self {
         let (x, y) = (self.x.min(other.x), self.y.min(other.y));
         let length = |end: u64, other_end: u64, start: u32| {
@@ -107,9 +107,8 @@ impl Area {
         })
     }
 
-    /// Divides the picture into a grid of squares of side `side`, in pixels, from its top left
-    /// corner on. Returns the squares that overlap the area, row by row. The squares are not
-    /// clipped.
+    /// Divides the whole picture into squares of side `side`, in pixels, starting at its top left
+    /// corner. Returns the squares that overlap the area, row by row. The squares are not clipped.
     ///
     /// # Panics
     ///
@@ -171,14 +170,14 @@ impl Area {
         quarters.filter(|quarter| quarter.width > 0 && quarter.height > 0)
     }
 
-    /// Returns the pixel in the middle of the area. Of two middle columns or rows, chooses the
-    /// second.
+    /// Returns the pixel in the middle of the area. If two columns or two rows are equally close to
+    /// the middle, chooses the second.
     pub fn middle(self) -> Self {
         Self::pixel(self.x + self.width / 2, self.y + self.height / 2)
     }
 
-    // The end of the range, the sum of a column and a width, may exceed `u32` for an area that a
-    // user has typed. The range is therefore in `u64`.
+    // The range is in `u64`, because its end, `x + width`, may exceed `u32::MAX` if a user has
+    // typed the area.
     fn columns(self) -> std::ops::Range<u64> {
         u64::from(self.x)..u64::from(self.x) + u64::from(self.width)
     }

@@ -16,7 +16,7 @@ pub(crate) fn available() -> usize {
     1
 }
 
-/// The calling thread.
+/// The calling thread, which does all work.
 pub(crate) struct Threads;
 
 impl Threads {

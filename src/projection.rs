@@ -45,8 +45,8 @@ impl Projection {
     /// projections per second.
     pub fn quick(camera: &Camera, image: &Image) -> Self {
         let [right, top, backward] = formulas::axes(camera);
-        // If a length exceeds the range of `f64`, the textbook formulas give axes that are not
-        // finite. The exact axes are then used.
+        // If the length of a vector overflows, the textbook formulas give axes that are not finite.
+        // The axes are then computed exactly.
         if !(right + top).is_finite() {
             return Self::new(camera, image);
         }

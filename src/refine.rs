@@ -1,9 +1,9 @@
 //! Coarse pictures that become finer step by step, for a preview.
 //!
-//! Each picture of the prepared scene consists of square blocks, smaller ones than the picture
-//! before. A block shows the colour at its centre, so that only colours of the scene are shown. The
-//! preview decides when to continue with the full picture (`render`), and when to stop because the
-//! scene has changed.
+//! Each picture consists of square blocks, which are smaller than those of the picture before. A
+//! block shows the colour at its centre, so that only colours of the scene are shown. The caller
+//! decides when to render the full picture (`render`), and when to stop because the scene has
+//! changed.
 
 use std::sync::{Mutex, atomic::Ordering};
 
@@ -107,11 +107,11 @@ pub fn coarse(
     Ok(Coarse { side, film })
 }
 
-/// Returns the colour that is seen at the centre of a block, by its index in the scene's palette.
+/// Returns the palette index of the colour that is seen at the centre of a block.
 fn at_center(world: &World, block: Area) -> usize {
-    // Along a side with an odd number of pixels, the centre lies in the middle of a pixel.
-    // Otherwise, it lies between two pixels. It is then given as a point of the second pixel: half
-    // a pixel to the left of, or above, this pixel's middle, so the offset is −0.5.
+    // `place` returns a pixel and an offset from the pixel's middle. If the number of pixels is
+    // odd, the centre is the middle of a pixel. If it is even, the centre lies between two pixels,
+    // at an offset of −0.5 pixels from the middle of the second.
     let place = |start: u32, length: u32| match length % 2 {
         0 => (start + length / 2, -0.5),
         _ => (start + length / 2, 0.0),

@@ -1,4 +1,5 @@
-//! The number of threads, and pools of threads. Nested work runs on the threads of the outer work.
+//! The number of threads, and pools of threads. If work inside a pool asks for as many threads as
+//! the pool has, it runs on the same pool.
 
 use std::{
     num::NonZero,
@@ -25,12 +26,12 @@ pub struct NoThreads(#[from] ThreadPoolBuildError);
 /// machines have more processors, and threads beyond the number of processors gain nothing.
 const MAX_THREADS: usize = 1024;
 
-/// Maximum number of threads of the process; 0 if there is no limit. This limit and the number of
-/// processors are the only global state, and they change only running times.
+/// Maximum number of threads of the process; 0 if there is no limit. The limit is global state, but
+/// it affects only running times, never results.
 static LIMIT: AtomicUsize = AtomicUsize::new(0);
 
-/// Number of processors of the machine that this process may use. It is stored because asking the
-/// system takes longer than rendering a small picture.
+/// Number of processors that this process may use. It is stored because asking the system takes
+/// longer than rendering a small picture.
 static PROCESSORS: LazyLock<usize> =
     LazyLock::new(|| thread::available_parallelism().map_or(1, NonZero::get));
 
@@ -53,14 +54,15 @@ pub(crate) fn available() -> usize {
 pub(crate) enum Threads {
     /// A pool that was started for the work.
     Started(ThreadPool),
-    /// The threads on which the caller already runs. When hundreds of pictures are rendered in one
-    /// pool, each of them uses the threads of this pool instead of starting others.
+    /// The pool in which the caller already runs. For example, hundreds of pictures that are
+    /// rendered in one pool share its threads. Starting a pool for each picture would take longer.
     Current,
 }
 
 impl Threads {
-    /// Returns `threads` threads, or the available number if `threads` is `None`. Returns the
-    /// current threads if their number is the requested one, or if the system cannot start others.
+    /// Starts a pool of `threads` threads, or of `available()` threads if `threads` is `None`. If
+    /// the caller already runs in a pool of this size, returns that pool instead. If the system
+    /// cannot start threads, work runs on the threads of the caller.
     ///
     /// # Errors
     ///
@@ -73,10 +75,10 @@ impl Threads {
         }
     }
 
-    /// Returns the pool that was built. Building may have failed, for instance because too many
-    /// threads are running. In that case, returns the current threads if the calling thread belongs
-    /// to a pool. Otherwise, makes the calling thread the only thread of a new pool, and returns
-    /// this pool; rayon then keeps the thread in it permanently.
+    /// Returns the pool `built`. If the system could not start it, for instance because too many
+    /// threads are running, returns the pool in which the caller runs. If the caller runs in no
+    /// pool, makes a new pool with the calling thread as its only thread. Rayon then keeps this
+    /// thread in the new pool permanently.
     fn started(built: Result<ThreadPool, ThreadPoolBuildError>) -> Result<Self, NoThreads> {
         match built {
             Ok(pool) => Ok(Self::Started(pool)),
@@ -111,9 +113,9 @@ pub(crate) fn install<R: Send>(
 }
 
 /// Calls `work` for each item, in any order, on `threads` threads, or on the available number if
-/// `threads` is `None`. `work` gets the state that `state` makes for each thread. A single item is
-/// handled on the calling thread, since starting others takes longer than rendering a small
-/// picture.
+/// `threads` is `None`. `work` also gets a state, such as a buffer, that `state` makes. A state is
+/// reused for many items, but only one thread uses it. A single item is handled on the calling
+/// thread, since starting threads takes longer than rendering a small picture.
 ///
 /// # Errors
 ///

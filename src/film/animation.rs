@@ -12,7 +12,8 @@ use png::Writer;
 use super::{pixels::Film, png::encoder};
 use crate::lock::lock;
 
-/// An animation to which pictures are added one by one, so that only one of them is in memory.
+/// An animation to which pictures are added one by one. Earlier pictures are in memory only in
+/// compressed form.
 pub struct Animation {
     size: [u32; 2],
     writer: Writer<Shared>,
@@ -21,11 +22,11 @@ pub struct Animation {
 
 impl Animation {
     /// Begins an animation of `count` pictures, each of which is shown for `pause` milliseconds.
-    /// After the last one, the first one is shown again.
+    /// After the last picture, the animation starts again.
     ///
     /// # Errors
     ///
-    /// `count` is 0, or a picture of that size is impossible.
+    /// `count` is 0, or a PNG cannot have this size.
     pub fn new(size: [u32; 2], count: u32, pause: u16) -> io::Result<Self> {
         let file = Shared::default();
         let mut encoder = encoder(file.clone(), size);
@@ -68,7 +69,7 @@ impl fmt::Debug for Animation {
     }
 }
 
-/// The bytes of a file, which stay when the writer that has written them is gone.
+/// The bytes of a file, shared with the writer. They remain when the writer is dropped.
 #[derive(Clone, Debug, Default)]
 struct Shared(Arc<Mutex<Vec<u8>>>);
 

@@ -20,13 +20,13 @@ const STEPS: f64 = 255.0;
 const SLACK: f64 = 1e-5;
 
 /// Slope of the sRGB curve at black, where it is steepest, in steps of 8-bit sRGB per unit of
-/// linear light. It converts an error bound in linear light to one in steps.
+/// linear light. With this slope, an error bound in linear light is converted to steps.
 const STEEPEST: f64 = 12.92 * STEPS;
 
 /// Names of a pixel's channels, in the order in which a film stores them.
 pub const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
-/// Greatest difference between two pixels at which they are treated as equal, in each channel.
+/// Maximum difference of a channel at which two pixels are treated as equal.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance<'a> {
     /// Tolerance that is the same for all pixels, in steps of 8-bit sRGB.
@@ -56,8 +56,8 @@ pub struct Comparison {
     /// Root mean square of the differences over all channels of all pixels, in linear light, from 0
     /// to 1.
     pub rmse: f64,
-    /// The largest difference. If it occurs several times, the topmost occurrence is given, and the
-    /// leftmost of these.
+    /// The largest difference. If it occurs several times, the first occurrence is given, counted
+    /// row by row.
     pub largest: Largest,
     /// Number of pixels that differ by more than the tolerance.
     pub beyond: u64,
@@ -163,8 +163,8 @@ pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, S
 fn difference(p: [f64; 3], q: [f64; 3]) -> (usize, f64) {
     let differences = [0, 1, 2].map(|channel| {
         let difference = (steps(p[channel]) - steps(q[channel])).abs();
-        // The difference is NaN if a channel is. It is replaced by infinity, since NaN would
-        // compare as if the pixels were equal.
+        // If a value is NaN, the difference is NaN, too. It is replaced by infinity, since
+        // `f64::max` ignores NaN, so the pixels would count as equal.
         if difference.is_nan() {
             f64::INFINITY
         } else {
@@ -242,8 +242,8 @@ pub fn heat_map_up_to(
 pub const HEAT_LEGEND: &str =
     "black: within the tolerance; red: 85 steps of 255; yellow: 170; white: 255 (linear)";
 
-/// Returns the colour of a heat map, in linear light, for a difference. A difference of 1 is drawn
-/// white.
+/// Returns the colour of a heat map, in linear light. A difference of 0 is drawn black, and one of
+/// 1 white.
 fn heat(difference: f64) -> [f64; 3] {
     let t = 3.0 * difference;
     [t, t - 1.0, t - 2.0].map(|encoded| crate::color::srgb_to_linear(encoded.clamp(0.0, 1.0)))

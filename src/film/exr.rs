@@ -47,8 +47,8 @@ pub fn write_exr<P: AsFloats>(
     write_exr_bands(part, whole, digest, out, [Ok(film)])
 }
 
-/// Writes an OpenEXR file as [`write_exr`] does, from bands of rows, from the top to the bottom. So
-/// the whole picture need not be in memory.
+/// Writes an OpenEXR file as [`write_exr`] does, but from bands of rows, from the top to the
+/// bottom. The whole picture need not be in memory.
 ///
 /// # Errors
 ///
@@ -76,7 +76,8 @@ pub fn write_exr_bands<P: AsFloats, B: Borrow<Film<P>>>(
         floats: Vec::new(),
         at: None,
     };
-    // The blocks are compressed and written one by one, so that at most one is in memory.
+    // Blocks of rows are compressed and written one by one, so that the whole file is never in
+    // memory.
     block::write(
         io::BufWriter::new(out),
         headers(part, whole, digest),
@@ -115,8 +116,8 @@ pub fn write_exr_bands<P: AsFloats, B: Borrow<Film<P>>>(
 fn headers(part: Area, whole: Area, digest: Option<&str>) -> Headers {
     let channel = |name: &str| ChannelDescription::named(name, SampleType::F32);
     let size = Vec2(part.width as usize, part.height as usize);
-    // Blocks of 16 rows compress better than single rows, but several copies of a block are in
-    // memory at once. Very wide pictures are therefore written in blocks of one row.
+    // Blocks of 16 rows compress better than single rows, but the encoder holds several copies of a
+    // block in memory. Very wide pictures are therefore written in blocks of one row.
     let compression = match part.width {
         0..=0x1_0000 => Compression::ZIP16,
         _ => Compression::ZIP1,
@@ -130,8 +131,8 @@ fn headers(part: Area, whole: Area, digest: Option<&str>) -> Headers {
         digest.map(|digest| (Text::from(DIGEST), AttributeValue::Text(Text::from(digest))));
     own.other.extend(digest);
     let shared = ImageAttributes {
-        // These are the colours of sRGB's red, green, blue and white. OpenEXR also assumes them if
-        // a file does not name any.
+        // Chromaticities of sRGB's red, green, blue and white. OpenEXR assumes the same ones if a
+        // file contains none.
         chromaticities: Some(Chromaticities {
             red: Vec2(0.64, 0.33),
             green: Vec2(0.3, 0.6),
@@ -155,7 +156,7 @@ fn headers(part: Area, whole: Area, digest: Option<&str>) -> Headers {
     [header][..].into()
 }
 
-/// The rows of a picture that is given in bands.
+/// Reader of single rows of a picture that is given in bands of several rows.
 struct Rows<I, B> {
     /// The picture's area.
     part: Area,
@@ -171,8 +172,8 @@ struct Rows<I, B> {
 }
 
 impl<I, B> Rows<I, B> {
-    /// Returns row `y`, counted from the top of the picture. Rows must be requested in order; one
-    /// may be requested several times.
+    /// Returns row `y`, counted from the top of the picture. Rows must be requested in order. The
+    /// last row may be requested again.
     fn row<P: AsFloats>(&mut self, y: u32) -> io::Result<&[[f32; 3]]>
     where
         I: Iterator<Item = io::Result<B>>,

@@ -1,4 +1,4 @@
-//! The compression of a JPEG file, and its effect on other pictures.
+//! Reads how strongly a JPEG file is compressed, and compresses other pictures in the same way.
 //!
 //! In: a file. Out: its quantization tables for luma (brightness) and chroma (colour), and its
 //! chroma subsampling. The first table in the file is taken for luma and the second for chroma,
@@ -31,8 +31,8 @@ pub struct Jpeg {
 /// coefficient is rounded to a multiple of its step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JpegTable {
-    /// Square of the quantization step of a block's mean. The rounding error of the mean has a
-    /// twelfth of this as its variance.
+    /// Square of the quantization step of a block's mean. A twelfth of this square is the variance
+    /// of the mean's rounding error.
     pub first: f64,
     /// Mean of the squares of all 64 steps.
     pub mean: f64,

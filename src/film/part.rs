@@ -1,18 +1,18 @@
-//! Finds where a cropped picture lies in the whole one, if its file does not say so.
+//! Finds where a part lies in the whole picture, if the part's file does not say so.
 
 use super::pixels::Film;
 use crate::area::Area;
 
 /// Approximate maximum number of pixels that are compared in the search for a part's position,
 /// summed over all positions. At each position, 16 to 400 pixels are compared, or all pixels of a
-/// smaller part. A larger maximum makes the search slower. With a smaller one, fewer pixels are
-/// compared at each position, so that a wrong result is more likely.
+/// smaller part. A larger maximum makes the search slower. With a smaller maximum, fewer pixels are
+/// compared at each position, and a wrong result is more likely.
 const MAX_COMPARED: u64 = 100_000_000;
 
-/// Maximum remaining difference at the best position: the sum of the squared colour differences
-/// there, divided by the mean of these sums at all positions. If the quotient is larger, no
-/// position is returned. At the right position, the usual noise of sampling leaves a quotient far
-/// below this limit. If the part does not fit anywhere, the quotient is near 1.
+/// Maximum squared colour difference at the best position, as a fraction of the mean over all
+/// positions. If the fraction is larger, no position is returned. At the right position, the usual
+/// noise of sampling gives a fraction far below this limit. If the part does not fit anywhere, the
+/// fraction is near 1.
 const MAX_LEFT: f64 = 0.2;
 
 /// Minimum area of a part, as a fraction of the whole picture's area. No position is returned for a

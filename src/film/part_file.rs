@@ -26,7 +26,7 @@ use crate::area::Area;
 /// Rows of a picture, from the top.
 pub type FileRows<P> = Box<dyn Iterator<Item = io::Result<Vec<P>>>>;
 
-/// What an OpenEXR file says about its place in a whole picture.
+/// The part of a whole picture that an OpenEXR file shows, according to its header.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExrPlace {
     /// The file's area in the whole picture.
@@ -38,7 +38,7 @@ pub struct ExrPlace {
 }
 
 impl ExrPlace {
-    /// Returns the file's area, or `None` if it is that of the whole picture.
+    /// Returns the file's area, or `None` if the file shows the whole picture.
     pub fn crop(&self) -> Option<Area> {
         (self.area != Area::whole(self.size[0], self.size[1])).then_some(self.area)
     }

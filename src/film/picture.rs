@@ -13,8 +13,8 @@ pub struct Picture {
     pub rounding: Rounding,
     /// Change of colours by the file's format, besides rounding.
     pub coding: Coding,
-    /// The part of the whole picture that the file contains. `None` if it contains all of it, or
-    /// does not name a part.
+    /// The part of the whole picture that the file contains. `None` if the file contains the whole
+    /// picture, or does not say which part it contains.
     pub crop: Option<Area>,
     /// Numbers of columns and rows of the whole picture. `None` if `crop` is `None`, or if the file
     /// does not give them.
@@ -46,7 +46,8 @@ impl Picture {
 pub struct Opacity {
     /// Least and greatest opacity of the pixels, from 0 to 1.
     pub range: [f64; 2],
-    /// Colours before they are mixed with black according to the opacity, in linear light.
+    /// Colours of the pixels before they are mixed with black according to their opacity, in linear
+    /// light.
     pub film: Film,
 }
 

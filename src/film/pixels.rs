@@ -18,8 +18,8 @@ pub trait Pixel: Copy + Default + Send + Sync {
     fn of(light: [f64; 3], encoder: &Encoder) -> Self;
 
     /// Returns whether all colours within `bound` of `light` in each channel are converted to the
-    /// same pixel. For 64-bit floats, it is enough if the colours are equal as 32-bit floats,
-    /// because EXR files contain these.
+    /// same pixel. 64-bit floats count as the same if they are equal after rounding to 32 bits,
+    /// because EXR files contain 32-bit floats.
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool;
 }
 
@@ -53,8 +53,8 @@ impl Pixel for [f64; 3] {
     }
 
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool {
-        // An EXR file contains 32-bit floats. So it is enough if all colours within the bound are
-        // equal after they are rounded to 32 bits.
+        // An EXR file contains 32-bit floats, so only differences that remain after rounding to 32
+        // bits matter.
         <[f32; 3]>::is_certain(light, bound, encoder)
     }
 }
@@ -103,7 +103,7 @@ impl AsBytes for [u8; 3] {
     }
 }
 
-/// Error: the number of pixels in a list is not that of the picture, or is 0.
+/// Error: a list does not have one pixel for each pixel of a picture, or is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("{count} pixels do not make a picture of {width} × {height}")]
 pub struct WrongPixelCount {

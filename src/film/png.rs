@@ -34,8 +34,8 @@ const CROP: &str = "pinhole:crop";
 const SIZE: &str = "pinhole:size";
 const DIGEST: &str = "pinhole:digest";
 
-/// Bytes of an iTXt chunk between its keyword and its text: the end of the keyword, a flag that the
-/// text is compressed, the method, zlib, and the ends of an empty language and of an empty
+/// Bytes of an iTXt chunk between its keyword and its text: the zero that ends the keyword, 1 for
+/// compressed text, 0 for the method zlib, and the zeros that end an empty language and an empty
 /// translated keyword.
 const PACKED_TEXT: &[u8] = &[0, 1, 0, 0, 0];
 
@@ -73,8 +73,8 @@ pub enum NotOurs {
     NoPart,
 }
 
-/// Writes a picture as a PNG. Also stores `recipe`, except for the scene and its overrides if they
-/// are too long ([`fits`](Recipe::fits)).
+/// Writes a picture as a PNG, and `recipe` as texts in it. The scene and its overrides are left out
+/// if they are too long ([`fits`](Recipe::fits)).
 ///
 /// # Errors
 ///
@@ -88,7 +88,7 @@ pub fn write_png<P: AsBytes>(
     write_png_bands(size, recipe, out, [Ok(film)])
 }
 
-/// Writes a picture as [`write_png`] does, from bands of rows, from the top to the bottom. The
+/// Writes a picture as [`write_png`] does, but from bands of rows, from the top to the bottom. The
 /// whole picture need not be in memory. `size` contains the numbers of columns and rows.
 ///
 /// # Errors
@@ -105,8 +105,8 @@ pub fn write_png_bands<P: AsBytes, B: Borrow<Film<P>>>(
 
     let software = concat!("pinhole ", env!("CARGO_PKG_VERSION"));
     let texts = recipe.into_iter().flat_map(texts);
-    // One compressor, reused for all texts: to clear the memory of a new one takes longer than to
-    // compress a short text.
+    // All texts share one compressor, because clearing the memory of a new compressor takes longer
+    // than compressing a short text.
     let mut compressor = ZlibEncoder::new(Vec::new(), Compression::fast());
     for (keyword, text) in [(SOFTWARE, software.to_owned())].into_iter().chain(texts) {
         compressor.write_all(text.as_bytes())?;
@@ -213,7 +213,7 @@ pub fn read_part(picture: &[u8]) -> Result<(Part, Option<Recipe>), NotOurs> {
     Ok((part, recipe))
 }
 
-/// The texts of a PNG file that Pinhole wrote. Those that are missing are `None`.
+/// The texts of a PNG file that Pinhole wrote. A text that is missing is `None`.
 #[derive(Default)]
 struct StoredTexts {
     scene: Option<String>,

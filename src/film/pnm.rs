@@ -4,7 +4,7 @@
 //! Shells and systems may damage such files. The damage is repaired if it can be recognised for
 //! certain: a byte order mark or lines of text in front, UTF-16 or UTF-8 instead of bytes, or a
 //! carriage return inserted before every line feed. Missing numbers and numbers out of range are
-//! reported with their position. The crate `image` reads PAM files.
+//! reported with their position. PAM files (type P7) are read by the crate `image` instead.
 
 use super::{
     memory,
@@ -418,7 +418,8 @@ impl<'b> PnmReader<'b> {
         self.bytes.get(self.at + 1..).unwrap_or_default()
     }
 
-    /// Returns the bytes after the header, if a line end follows it; otherwise `None`.
+    /// Returns the bytes after the header and its line end. Returns `None` if the header has no
+    /// line end.
     fn after_line_end(&self) -> Option<&'b [u8]> {
         let rest = self.bytes.get(self.at..)?;
         rest.strip_prefix(b"\r\n").or(rest.strip_prefix(b"\n"))

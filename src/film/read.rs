@@ -29,7 +29,7 @@ use crate::color::srgb_to_linear;
 /// less.
 const UNPACKING: usize = 512 << 20;
 
-/// Returns whether a file begins as a picture does, in any format, even one that is not supported.
+/// Returns whether a file begins like a picture of a known format, which need not be supported.
 pub fn is_picture(bytes: &[u8]) -> bool {
     pnm::start(bytes).is_some() || format(bytes).is_some()
 }
@@ -71,8 +71,8 @@ pub fn read_picture_up_to(bytes: &[u8], limit: u64) -> Result<Picture, Unreadabl
         Some(ImageFormat::Png) => read_png(bytes, limit)?,
         Some(ImageFormat::Pnm) if !bytes.starts_with(b"P7") => pnm::read(bytes, limit)?,
         Some(format) if format.reading_enabled() => read(bytes, format, limit)?,
-        // PNM files with a byte order mark or text in front, and those in UTF-16, do not begin as a
-        // picture does, so they are tried last.
+        // `format` does not recognise a PNM in UTF-16, or a PNM after a byte order mark or lines of
+        // text. These kinds of PNM are tried last.
         None => pnm::read(bytes, limit).map_err(|error| match (error, no_picture::of(bytes)) {
             (Unreadable::Format(None), Some(what)) => Unreadable::Other(what),
             (error, _) => error,
@@ -276,8 +276,9 @@ fn fill<T: Copy>(
     mix(film, samples.as_chunks().0.iter().copied(), light, opacity)
 }
 
-/// Fills a film from pixels of red, green, blue and opacity, mixed with black. Returns the opacity,
-/// or `None` if all pixels are opaque. Fails if there is not enough memory.
+/// Fills a film from pixels of red, green, blue and opacity. Mixes the colours with black according
+/// to the opacity. Returns the opacity, or `None` if all pixels are opaque. Fails if there is not
+/// enough memory.
 fn mix<T: Copy>(
     film: &mut Film,
     pixels: impl Iterator<Item = [T; 4]>,
@@ -308,7 +309,8 @@ fn mix<T: Copy>(
 
 fn unreadable(error: &ImageError, format: ImageFormat) -> Unreadable {
     let format = name(format);
-    // The error's own text would repeat the format's name, so the text of its cause is used.
+    // The text of the error would repeat the format's name, so the text of the error's cause is
+    // used.
     let cause = error
         .source()
         .map_or_else(|| error.to_string(), ToString::to_string);

@@ -100,7 +100,8 @@ pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
 
 /// Returns the names of the channels to read: `R`, `G` and `B`, possibly with the prefix of a
 /// layer, such as `beauty.R`. If several layers have all three channels, the one without a prefix
-/// is chosen. Fails if no layer has them, or if several have them and all have a prefix.
+/// is chosen. Fails if no layer has all three, or if several layers have them and each of these
+/// layers has a prefix.
 fn channels(headers: &[Header]) -> Result<[Text; 3], Unreadable> {
     let names = headers.iter().flat_map(|header| &header.channels.list);
     let names: BTreeSet<String> = names.map(|channel| channel.name.to_string()).collect();

@@ -24,14 +24,14 @@ pub struct Recipe {
     /// The overrides of the scene's values, i.e. the `--set` arguments, in the order given by the
     /// user.
     pub overrides: Vec<String>,
-    /// The part of the picture that was rendered; `None` if all of it was rendered.
+    /// The part of the picture that was rendered; `None` if the whole picture was rendered.
     pub crop: Option<Area>,
-    /// Numbers of columns and rows of the whole picture, if only a part was rendered. `None` if all
-    /// of it was rendered, or if they are unknown.
+    /// Numbers of columns and rows of the whole picture. `None` if the whole picture was rendered,
+    /// or if its size is unknown.
     pub size: Option<[u32; 2]>,
 }
 
-/// Where a picture lies in a whole one, and from what it was made.
+/// The part of a whole picture that a file shows, and a digest of what the picture was made from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
     /// The part's area in the whole picture.
@@ -50,8 +50,8 @@ impl Recipe {
         self.overrides.len() <= OVERRIDES_LIMIT && self.scene.len() + overrides <= TEXT_LIMIT
     }
 
-    /// Returns the part of the whole picture that is rendered by this recipe; `None` if all of it
-    /// is, or if the whole picture's size is unknown.
+    /// Returns the part of the picture that this recipe renders. Returns `None` if it renders the
+    /// whole picture, or if the whole picture's size is unknown.
     pub fn part(&self) -> Option<Part> {
         Some(Part {
             area: self.crop?,

@@ -54,8 +54,8 @@ impl<T> Latest<T> {
         self.take_while(Duration::MAX, || {})
     }
 
-    /// Waits for a value as [`take`](Self::take) does, and calls `idle` after each `pause` of
-    /// waiting. Returns `None` if the slot is closed.
+    /// Waits for a value as [`take`](Self::take) does, and calls `idle` each time it has waited for
+    /// `pause`. Returns `None` if the slot is closed.
     pub fn take_while(&self, pause: Duration, mut idle: impl FnMut()) -> Option<T> {
         let mut state = lock(&self.state);
         loop {

@@ -6,8 +6,8 @@
 //!
 //! Events come in bursts, so the file is read after a short time without events. Two crates extend
 //! notify by such a delay, but neither is used. notify-debouncer-mini does not report the kind of
-//! an event; reading the file would itself cause an event and thus another reading.
-//! notify-debouncer-full mainly tracks renamed files, which is not needed.
+//! an event. Events that are caused by reading the file could then not be ignored, and each would
+//! cause another reading. notify-debouncer-full mainly tracks renamed files, which is not needed.
 //!
 //! In addition, the file's time, length and identity are checked once a second. This detects
 //! changes that cause no event: in folders on other machines, in folders that were removed and
@@ -47,8 +47,9 @@ const QUIET_TIME: Duration = Duration::from_millis(10);
 /// events still arrive. A user who saves hardly notices a delay of 200 ms.
 const LONGEST_BURST: Duration = Duration::from_millis(200);
 
-/// Time without events after which a missing or empty file is reported as missing or empty. Before
-/// that, a program may be saving it: some empty or remove a file before they write the new content.
+/// Time without events after which a missing or empty file is reported as missing or empty. Until
+/// then, a program may be saving the file: some programs empty or remove a file before they write
+/// the new content.
 const ABSENCE: Duration = Duration::from_millis(300);
 
 /// Maximum time to wait until a missing or empty file has content, even if events still arrive. Two
@@ -143,13 +144,13 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
             };
             match event {
                 Ok(event) if self.concerns(&event) => self.settle(),
-                // An event about another file does not lead to a check. But if such events keep
-                // arriving, the check that is due once a second must be made, too.
+                // Events about other files are skipped. But the check once a second must be made
+                // even while such events keep arriving.
                 Ok(_) if since < next_look => continue,
                 _ => {
                     next_look = since + POLL_INTERVAL;
                     if stamp(&self.path) == self.stamp {
-                        // Watch the current folders: a removed folder may exist again, or a link
+                        // The folders may have changed: a removed folder may exist again, or a link
                         // may have a new target.
                         self.follow();
                         continue;

@@ -8,15 +8,15 @@ use crate::{
     tracer::World,
 };
 
-/// Greatest number of pixels of a picture that are in memory at once. Greater pictures are rendered
-/// and written in bands of rows, so that the size of a poster is limited by the disk. The pixels of
-/// a band need 12 to 50 MB. With smaller bands, threads would wait more often for each other at a
-/// band's end.
+/// Maximum number of pixels that are in memory at once. A larger picture is rendered and written in
+/// bands of rows, so that only the disk limits its size. The pixels of a band need 12 to 50 MB.
+/// With smaller bands, threads would wait more often for each other at a band's end.
 const BAND_PIXELS: u32 = 1 << 22;
 
-/// Number of pixels above which a picture is rejected unless it would fit into memory. Rendering in
-/// bands does not need that memory, but so large a size is probably mistyped. A poster with sides
-/// of 2^18 pixels has exactly this number of pixels, so it is still rendered; this takes hours.
+/// Number of pixels above which the size of a picture is probably mistyped. A larger picture is
+/// rejected unless it would fit into memory, although rendering in bands needs less memory. A
+/// poster with sides of 2^18 pixels has exactly this number of pixels. It is still rendered, which
+/// takes hours.
 const MISTYPED: u64 = 1 << 36;
 
 /// Renders a part of the picture as [`render_as_asked`] does, in bands of rows, from the top. Each

@@ -143,8 +143,8 @@ pub fn render_numbers<P: film::Pixel, const N: usize>(
     finished(exact, control)
 }
 
-/// Returns the pixel's mean as it is stored in a film, the pixel's bound, and whether all colours
-/// within the bound are stored as the same value.
+/// Returns the pixel's mean colour as it is stored in a film, its error bound, and whether all
+/// colours within the bound are stored as the same value.
 fn convert<P: film::Pixel, const N: usize>(
     pixel: &ExactPixel<N>,
     encoder: &Encoder,

@@ -43,14 +43,14 @@ const SAMPLES_A_CANDIDATE: u64 = 2;
 const SAMPLES_A_CHUNK: u64 = 1 << 12;
 
 /// Side, in pixels, of the squares into which crowded areas are divided. An area is crowded if so
-/// many objects may be seen in it that pixels are not prepared one by one. For each square, nearby
-/// objects are searched once for all samples. Smaller squares would need more searches. In larger
-/// squares, each sample would have to test more objects.
+/// many objects may be seen in it that preparing its pixels would take too long. For each square,
+/// the objects near it are searched once and serve all of its samples. Smaller squares would need
+/// more searches. In larger squares, each sample would be tested against more objects.
 const CROWD_SIDE: u32 = 4;
 
-/// Minimum number of a pixel's samples for which the list of objects near a square of pixels is
-/// reduced to the objects near the pixel. With fewer samples, reducing the list would take longer
-/// than testing each sample against the whole list.
+/// Minimum number of samples for which a pixel gets its own list of nearby objects, selected from
+/// the list of its square ([`CROWD_SIDE`]). With fewer samples, the selection would take longer
+/// than testing each sample against the square's list.
 const SAMPLES_WORTH_A_LOOK: u64 = 3;
 
 /// Renders the tiles (rectangles of pixels) of a picture. All threads share this data.
@@ -231,7 +231,7 @@ enum Trace<'a> {
     Batched(&'a [VisibilityCandidate], Option<&'a CheckerPixel>),
     /// Traces one sample at a time, against the objects that may be seen in the pixel.
     AmongCandidates(&'a [VisibilityCandidate]),
-    /// Traces one sample at a time, against these objects near the pixel. With `None`, the
-    /// picture's quadtree lists the objects for each sample's ray.
+    /// Traces one sample at a time, against the given objects near the pixel. If they are `None`,
+    /// searches the picture's quadtree for each sample.
     AmongNearby(Option<&'a [BoundedObject]>),
 }

@@ -60,7 +60,7 @@ pub(super) fn render_as<P: film::Pixel>(
 }
 
 /// Returns the side of the tiles (squares that a thread renders at a time), in pixels. It is a
-/// power of two. The more samples a pixel has, the smaller is the side.
+/// power of two, and smaller if pixels have more samples.
 fn tile_side(sampling: &Sampling) -> u32 {
     let pixels = TILE_SAMPLES / sampling.samples_per_pixel().max(1);
     // The quotient is at most 2^18, so its root fits into 32 bits. The tracer first divides the

@@ -70,9 +70,9 @@ impl Counts {
     }
 }
 
-/// A cache of mean colours of pixels that show two colours. Most pixels that show more than one
-/// colour show two, and an earlier pixel usually had the same counts of these two. An entry is
-/// found by a hash of the two colours' palette slots (indices) and counts.
+/// A cache of mean colours of pixels that show two colours. Most pixels with several colours show
+/// two, usually with the same counts as an earlier pixel. An entry is found by a hash of the two
+/// colours' palette slots (indices) and counts.
 pub(super) struct Means<P>(Vec<([(usize, u64); 2], P)>);
 
 /// Number of entries of the cache of mean colours. The cache has at most 28 KiB, so it fits into

@@ -5,8 +5,7 @@
 //! the eye, a triangle or a box by the extremes of its corners.
 //!
 //! The bounds are those of the object's convex hull, widened by far more than all rounding errors.
-//! If a ray outside of the bounds were tested against the object itself, the result would therefore
-//! be a miss in every precision.
+//! A ray outside of the bounds therefore misses the object in every precision.
 
 use super::{
     camera::Camera, convex::Convex, cuboid, interval::Interval, local_form::Patch, object::Object,
@@ -33,9 +32,9 @@ pub struct Extent {
 const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// Minimum absolute value of the numbers from which an object's bounds are computed, such as
-/// lengths and products of two lengths. If one is smaller, the object is treated as unbounded.
-/// `f64` has its full relative precision of 2^−53 only above 1e-308. The minimum is far above this
-/// limit.
+/// lengths and products of two lengths. If a number is smaller, the object is treated as unbounded.
+/// `f64` has its full relative precision of 2^−53 only above 1e-308, which is far below this
+/// minimum.
 const SMALLEST: f64 = 1e-280;
 
 impl Object<f64> {
@@ -49,8 +48,8 @@ impl Object<f64> {
         face: Option<u8>,
     ) -> (Self, Option<Extent>) {
         let (object, corners) = if let Shape::Triangle(shape) = shape {
-            // A triangle's bounds are computed from its corners, which its preparation returns as
-            // well.
+            // `triangle::prepare` also returns the corners, from which the triangle's bounds are
+            // computed.
             let (triangle, corners) = triangle::prepare(double, shape).unzip();
             (
                 Object::Convex(triangle.unwrap_or_else(Convex::nothing)),
@@ -69,9 +68,9 @@ impl Object<f64> {
             (Self::Sphere(sphere), ..) => of_sphere(sphere, ahead),
             (_, Some(cuboid), _) => of_corners(&cuboid::corners(fast, cuboid), ahead),
             (_, None, Some(corners)) => of_corners(&corners, ahead),
-            // A checkerboard is infinite, so it has no corners. Neither has a triangle whose plane
-            // contains the eye: its preparation returns `None`. For these objects, the bounds are
-            // the whole view plane, and only the inverse depth is limited.
+            // A checkerboard is infinite and has no corners. If a triangle's plane contains the
+            // eye, `triangle::prepare` returns no corners. The bounds of both are the whole view
+            // plane; only their inverse depth is limited.
             (_, None, None) => Hull::Unbounded,
         };
         let extent = match hull {
@@ -157,7 +156,7 @@ fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
                 ball.rad.to_f64() * UP + middle.abs() * QUOTIENT_SLACK,
             )
         });
-        // NaN is excluded here, because `f64::min` and `f64::max`, which are used below, ignore it.
+        // NaN is excluded here, because `f64::min` and `f64::max` below would ignore it.
         let is_finite = |range: &Interval| range.low.is_finite() && range.high.is_finite();
         if ![x, y, z].iter().all(is_finite) {
             return Hull::Unbounded;
@@ -174,7 +173,7 @@ fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
     if greatest < 0.0 {
         return Hull::Behind;
     }
-    // The condition is also true if an overflow has left NaN.
+    // NaN, which an overflow may have left, also makes the condition true.
     if !(least > SMALLEST && greatest >= least) {
         return Hull::Unbounded;
     }

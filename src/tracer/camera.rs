@@ -1,8 +1,8 @@
 //! The camera: from a sample point to a ray's direction.
 //!
-//! All rays share the eye, so the tracer works in the camera's own axes: right (u), down (−v) and
-//! ahead (−w). In these axes a ray's direction is r = (X, Y, Z), where X and Y are proportional to
-//! the distance in pixels from the picture's centre. Z is 1, except in the widest views, where a
+//! All rays start at the eye, so the tracer works in the camera's own axes: right (u), down (−v)
+//! and ahead (−w). In these axes a ray's direction is r = (X, Y, Z), where X and Y are proportional
+//! to the distance in pixels from the picture's centre. Z is 1, except in the widest views, where a
 //! power of two keeps X and Y within [−1, 1]. A point at λr has the depth λZ.
 
 use glam::{DVec2, DVec3};
@@ -38,10 +38,9 @@ fn normalized(v: &Dyadic3) -> [Big; 3] {
     v.each_ref().map(|x| x.to_big().over(&length))
 }
 
-/// Returns a + b, or 0 if the absolute value of the sum does not exceed the errors of a and b. The
-/// error of each is at most four roundings. This sum is used to turn the camera's axes u and v by
-/// the roll. With a roll of 45 degrees, some components are sums of opposite numbers, and must
-/// become exactly 0.
+/// Returns a + b, or 0 if the sum's absolute value is at most the errors of a and b, four roundings
+/// each. The rotation of the camera's axes u and v by the roll uses this sum. With a roll of 45
+/// degrees, for example, a and b may be opposite numbers, whose sum must be exactly 0.
 fn sum(a: &Big, b: &Big) -> Big {
     let sum = a.plus(b);
     let lost = (a.magnitude() + b.magnitude()) * (8.0 * Big::UNIT);
@@ -64,7 +63,7 @@ impl Basis {
     /// v = w × u. Then u and v are turned by the roll.
     ///
     /// The numerators of these quotients are exact, so u is accurate to the last bits even if up
-    /// and f are almost parallel. If they are parallel, u = (h × up)/|h × up|, where h is the
+    /// and f are almost parallel. If up and f are parallel, u = (h × up)/|h × up|, where h is the
     /// [level direction](scene::level_direction). This is the u of a camera that looks along h and
     /// has the same up.
     pub fn new(camera: &scene::Camera, image: &Image) -> Self {
@@ -111,7 +110,7 @@ pub struct Window<R> {
     pub x: R,
     /// Maximum of |Y|, where Y is the downward component of a ray's direction.
     pub y: R,
-    /// Z, the component ahead, which is the same for all rays.
+    /// The forward component Z of a ray's direction, which is the same for all rays.
     pub z: R,
 }
 

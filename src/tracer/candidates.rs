@@ -1,8 +1,8 @@
 //! Conservative visibility: which objects may be seen in a part of the picture.
 //!
 //! In: the world, and a rectangle of its view plane. Out: the objects that may be seen in the
-//! rectangle. These are all objects except those that are proved to be hidden, or to be missed by
-//! every ray through the rectangle. The method is interval arithmetic. Whether a ray hits an object
+//! rectangle. An object is left out only if it is certainly hidden, or certainly missed by every
+//! ray through the rectangle. The method is interval arithmetic. Whether a ray hits an object
 //! depends on linear and quadratic forms of the ray's direction. The range of each form over the
 //! rectangle is computed, and widened by the form's error bound. If every ray through the rectangle
 //! hits an object, every other object that is certainly farther away is hidden.
@@ -67,10 +67,10 @@ pub fn narrowed(
 /// list entries for the area. An object has at most four entries, so there are then more than
 /// `most` objects.
 ///
-/// Also returns `false` if the function `is_worth` returns `false`, by which the caller can reject
-/// an area with too many objects. Its first argument is the number of objects found. Its second
-/// argument is the number of the objects' bounds that contain a ray through the area, averaged over
-/// all such rays.
+/// Also returns `false` if `is_worth` returns `false`. With this function, the caller can reject an
+/// area with too many objects. Its first argument is the number of objects found. Its second
+/// argument is the number of objects whose bounds contain a ray, averaged over all rays through the
+/// area.
 #[must_use]
 pub fn within(
     world: &World,
@@ -133,8 +133,8 @@ fn visible_of(
 ) {
     out.clear();
     let [near, far] = clips_over(world, patch);
-    // An object that every ray through the rectangle hits hides all objects whose maximum inverse
-    // depth is below its own minimum. `hidden` is the greatest of these minimums so far.
+    // If every ray through the rectangle hits an object, this object hides all others whose maximum
+    // inverse depth is below its minimum. `hidden` is the greatest of these minimums so far.
     let mut hidden = f64::NEG_INFINITY;
     for (object, bounds) in among {
         let Some(mut candidate) = cover(world, object, patch, near, far) else {
@@ -155,10 +155,10 @@ fn visible_of(
     }
 }
 
-/// Finds out how the object with the index `index` is seen in the rectangle `patch` of the view
-/// plane, for example whether it fills the rectangle. `near` and `far` are the ranges of the
-/// inverse depths of the near and the far plane over the rectangle. Returns `None` if the object is
-/// certainly not seen in the rectangle.
+/// Determines how the object with the index `index` may be seen in the rectangle `patch` of the
+/// view plane: whether it fills the rectangle, at which inverse depths, and at which crossings.
+/// `near` and `far` are the ranges of the inverse depths of the near and the far plane over the
+/// rectangle. Returns `None` if the object is certainly not seen in the rectangle.
 pub(super) fn cover(
     world: &World,
     index: usize,
@@ -206,10 +206,10 @@ pub(super) fn cover(
     Some(candidate)
 }
 
-/// Removes flat objects that another flat object hides in the whole rectangle `patch`. Of all flat
-/// objects that every ray through the rectangle hits, only the nearest is used to hide others. Of
-/// parallel layers, only the nearest remains. Of objects in one plane, only the first in the file
-/// remains. An object that the near plane may cut is kept, and hides no other object here.
+/// Removes flat objects that another flat object hides in the whole rectangle `patch`. Only one
+/// object is used to hide others: the nearest flat object that every ray through the rectangle
+/// hits. If several objects lie in its plane, the first in the file hides the others. An object
+/// that the near plane may cut is never removed, and is not used to hide others.
 ///
 /// The objects' planes are compared, because the ranges of two objects' inverse depths over the
 /// rectangle may overlap although one object is nearer along every ray.

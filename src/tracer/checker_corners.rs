@@ -1,15 +1,15 @@
 //! The squares of a checkerboard at the corners of many pixels at once.
 //!
-//! In: a block of pixels in which only one board is seen. Out: runs of pixels that show one colour,
-//! and for every other pixel the squares that it shows.
+//! In: a block of pixels in which only one board is seen. Out: runs of pixels (neighbours in a row)
+//! that show one colour, and for every other pixel the squares that it shows.
 //!
 //! Other parts of the picture are divided recursively into quarters. A part with only a board would
 //! mostly be divided down to single pixels. The square at a corner would then be computed four
-//! times, once for each pixel that shares the corner. In such a part, the squares at all corners of
-//! a block's pixels are therefore computed first, row by row in plain arrays, which the compiler
-//! vectorizes. A coordinate on the board is a ratio of linear forms, which has its extremes over a
-//! pixel at the pixel's corners. A pixel therefore shows only one square if all its corners lie in
-//! this square, farther from the square's edges than the error bound.
+//! times, once for each pixel that shares the corner. Here, the square at each corner of a block's
+//! pixels is computed only once, row by row in plain arrays, which the compiler vectorizes. A
+//! coordinate on the board is a ratio of linear forms, which has its extremes over a pixel at the
+//! pixel's corners. A pixel therefore shows only one square if all its corners lie in this square,
+//! farther from the square's edges than the error bound.
 
 use std::{array, ops::ControlFlow};
 
@@ -26,9 +26,8 @@ use crate::{
     math::{Double, ROUND, Real, UP, floor},
 };
 
-/// Minimum ratio of a denominator ℓ to its error bound f. The denominator is that of a board
-/// coordinate N/ℓ, a quotient of linear forms. If the ratio is smaller, the coordinate's error is
-/// treated as unbounded.
+/// Minimum ratio of ℓ to its error bound f, where N/ℓ is a coordinate on the board, a quotient of
+/// linear forms. If the ratio is smaller, the coordinate's error is treated as unbounded.
 ///
 /// Let e be the error bound of N. If the ratio is at least 4, (N ± e)/(ℓ ± f) differs from N/ℓ by
 /// at most 4/3 · (e + f·|N/ℓ|)/ℓ. The code uses the factor 4 instead of 4/3, which leaves a margin.
@@ -48,7 +47,8 @@ const MAX_ERROR: f64 = 0.25;
 pub(super) const SIDE: usize = 32;
 
 /// Number of array entries for one row of pixel corners in a block. A block of 32 pixels has 33
-/// corners in a row, which are rounded up to whole vectors of eight.
+/// corners in a row. This number is rounded up to a multiple of eight, the length of the widest
+/// vectors.
 const LANES: usize = 40;
 
 /// The squares of a board in one pixel, derived from the squares at the pixel's corners.
@@ -58,9 +58,9 @@ pub struct CheckerPixel {
     /// The squares at the pixel's four corners, by their indices in x and in z. The order of the
     /// corners is top left, top right, bottom left, bottom right.
     pub(crate) corners: [[f64; 4]; 2],
-    /// Whether the pixel's corners certainly lie in the squares `corners`. If not, a corner may lie
-    /// in a square next to the one in `corners`. The error bounds in the field `squares` are then
-    /// enlarged, so that they allow either of the two squares.
+    /// Whether each corner of the pixel certainly lies in its square in `corners`. If not, a corner
+    /// may lie in a neighbouring square instead. The error bounds in the field `squares` are then
+    /// large enough for both squares.
     pub(crate) is_certain: bool,
 }
 
@@ -85,7 +85,8 @@ struct CornerRow {
     sign: [f64; LANES],
 }
 
-/// What a run of pixels, or one pixel, shows of a checkerboard.
+/// The squares of a checkerboard that are seen in a run of pixels (neighbours in a row), or in one
+/// pixel.
 #[derive(Clone, Copy, Debug)]
 pub enum ShownSquares<'a> {
     /// A run of pixels that show one colour; `true` for the second colour.
@@ -299,10 +300,10 @@ impl BoardBlock {
         })
     }
 
-    /// Replaces the index of each uncertain square (NaN) in `corners` by the index that follows
-    /// from the corner's computed position. Returns the squares. Also returns, for x and z, an
-    /// upper bound of the distance, in squares, between an uncertain corner and the nearest line
-    /// between squares; 0 if no corner is uncertain. Returns `None` if a quotient is not finite.
+    /// Replaces each uncertain index (NaN) in `corners` by the index of the square at the corner's
+    /// computed position, and returns all indices. Also returns, for x and z, an upper bound of the
+    /// distance, in squares, from an uncertain corner to the nearest line between squares; 0 if no
+    /// corner is uncertain. Returns `None` if a quotient is not finite.
     #[cold]
     fn probable(
         &self,
@@ -359,8 +360,8 @@ fn corners_simd(board_block: &BoardBlock, y: f64, length: usize, out: &mut Corne
     board_block.evaluate(y, length, out);
 }
 
-/// Writes to `out`, for each pixel of a row, the parity sign (1 or −1) of its square if all its
-/// corners lie in one square, and 0 otherwise.
+/// Compares the squares at the four corners of each pixel of a row. If they are certain and equal,
+/// writes their `sign` (1 or −1) to `out`; otherwise, writes 0.
 #[multiversion(targets(
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",
@@ -402,8 +403,8 @@ impl CheckerForms {
         }
     }
 
-    /// Returns the least value over the rectangle of the form `below`, the denominator of the
-    /// board's coordinates. Returns `None` if it is not clearly positive.
+    /// Returns the least value of the form `below` over the rectangle. This form is the denominator
+    /// of the board's coordinates. Returns `None` if the value is not clearly positive.
     fn least(&self) -> Option<f64> {
         let least = self.below.factors[2] - self.below.spread() * UP;
         (least > MIN_CLEARANCE * self.below.rad).then_some(least)

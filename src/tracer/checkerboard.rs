@@ -20,10 +20,10 @@ use crate::{
     scene,
 };
 
-/// Distance, in squares, from which on [`Checkerboard::local`] does not move the origin of a
-/// board's coordinates to the part of the board that a rectangle shows. The distance is a quotient
-/// that is rounded to a whole number. From 2^52 on, an `f64` has no fractional digits, so the
-/// rounded quotient may be wrong by a whole square.
+/// Limit on the distance, in squares, by which [`Checkerboard::local`] moves the origin of a
+/// board's coordinates. The distance is a quotient that is rounded to a whole number. From 2^52 on,
+/// an `f64` has no fractional digits, so the rounded quotient may be wrong by a whole square. The
+/// origin is then not moved.
 const MOST_SQUARES: f64 = (1u64 << 52) as f64;
 
 /// A checkerboard prepared for one picture.
@@ -103,9 +103,10 @@ impl<T: Real> Checkerboard<T> {
         })
     }
 
-    /// Returns whether the square that the ray hits has the second colour, that is whether
-    /// floor(x/square) + floor(z/square) is odd. Returns a [`Doubt`] if rounding errors leave this
-    /// uncertain.
+    /// Returns whether the square that the ray hits has the second colour. This is so if
+    /// floor(x/square) + floor(z/square) is odd, where x and z are world coordinates of the
+    /// crossing, and `square` is the side of a square. Returns a [`Doubt`] if rounding errors leave
+    /// the colour uncertain.
     #[inline]
     pub fn is_odd(&self, r: &Direction<T>) -> Result<bool, Doubt> {
         let below = self.below.at(r);
@@ -144,9 +145,9 @@ impl<T: Real> Checkerboard<T> {
             odd ^= times as i64 & 1 == 1;
             let multiple = T::from_f64(times);
             let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&multiple)));
-            // `rad` bounds the error of the denominator ℓ, and is large enough for 12 roundings of
-            // ℓ. These are more than occur here: the error of ℓ is multiplied by `times`, and the
-            // product and the difference are rounded. Twice `rad` · |`times`| covers all of this.
+            // The error of ℓ is at most `rad`, and is multiplied by `times`. The product and the
+            // difference are rounded, too. These errors are smaller, because `rad` is large enough
+            // for 12 roundings of ℓ. Twice `rad` · |`times`| therefore covers all of them.
             (factors, own_rad + rad * (2.0 * times.abs()))
         });
         let mut forms = [a, b, (below, rad)];
@@ -183,8 +184,8 @@ impl Checkerboard<Double> {
 
 /// A coordinate of the eye as a whole number of squares and a remainder.
 struct EyeOffset {
-    /// What remains of the coordinate after subtracting the whole squares: at most half the side of
-    /// a square in magnitude.
+    /// The remainder of the coordinate after the whole squares are subtracted: at most half the
+    /// side of a square in magnitude.
     rest: f64,
     /// Whether the number of whole squares is odd.
     odd: bool,

@@ -1,4 +1,5 @@
-//! The curves that separate what is seen in a pixel, or in a part of one: lines and conics.
+//! The curves in a pixel, or in a part of one, on which the visible surface may change: lines and
+//! conics.
 //!
 //! In: the surfaces of objects in one precision, and a [`SubPixel`]. Out: the objects' silhouettes,
 //! and the curves where their depths are equal, in the coordinates of the sub-pixel.
@@ -21,7 +22,7 @@ use super::{camera::Camera, form::Form, interval::Interval, sphere::Sphere, sub_
 /// causes an error of three unit roundoffs.
 pub(crate) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
-/// A curve that separates what is seen in a pixel.
+/// A curve in a pixel on which the visible surface may change.
 #[derive(Clone, Debug)]
 pub enum Boundary {
     /// A line.
@@ -237,13 +238,13 @@ fn line_of<T: Real>(linear: &Linear<T>) -> Boundary {
     line(&factors, linear[0].rad + linear[1].rad + linear[2].rad)
 }
 
-/// Returns the line on which a linear form is zero. The form is divided by its greater slope.
-/// Different forms that are zero on the same line, such as the horizon of parallel planes,
-/// therefore get equal factors.
+/// Returns the line on which a linear form is zero. The form is divided by its greater slope, i.e.
+/// factor of x or y. Different forms that are zero on the same line, such as the horizon of
+/// parallel planes, therefore get equal factors.
 fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let [a, b, _] = factors;
     let greatest = if a.magnitude() < b.magnitude() { b } else { a };
-    // If the form has no slope, it is constant and has no zero line. It is then divided by 1.
+    // A form without a slope is constant, and is zero on no line. It is divided by 1 instead.
     let exponent = -greatest.magnitude().exponent();
     let greatest = greatest.scaled(exponent);
     let slope = if greatest.is_zero() {
@@ -318,9 +319,9 @@ impl Conic {
         // - In any case, 4 · 2 · √(ε/(greatest |F|)), by the inequality of Brudnyi and Ganzburg
         //   (1973) for polynomials of degree 2 on a convex set of area 1 in the plane.
         //
-        // In the last bound, the greatest |F| is at least 1/16. The reason is that some factor is
-        // at least 1/2, and that a factor is at most 8 times the greatest |F|. For example, A is a
-        // combination of three values of F with weights of the magnitudes 2, 4 and 2.
+        // In the last bound, the greatest |F| is at least 1/16: some factor is at least 1/2, and
+        // each factor is at most 8 times the greatest |F|. For example, A is a combination of three
+        // values of F with weights of the magnitudes 2, 4 and 2.
         let [a, b, c, d, e, _] = self.factors.map(|factor| factor.hi);
         let turn = libm::hypot(a.abs() + b.abs(), b.abs() + c.abs());
         let gradient = 2.0 * (libm::hypot(d, e) - 0.5 * turn);

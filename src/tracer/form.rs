@@ -17,9 +17,9 @@ pub struct Form<T: Real> {
     rad: T::Radius,
     /// Factors of an error bound for a single ray. For the direction (X, Y, Z), the error of the
     /// form's value is at most `rads[0]`·|X| + `rads[1]`·|Y| + `rads[2]`·|Z|. In the middle of a
-    /// very wide view, this is far less than `rad`, which holds in the whole window. `None` except
-    /// in the highest precision, because the other precisions leave doubtful decisions to the next
-    /// one.
+    /// very wide view, this is far less than `rad`, which holds in the whole window. Only the
+    /// highest precision has these factors. Each other precision leaves doubtful decisions to the
+    /// next one, so the field is `None`.
     rads: Option<Box<[T::Radius; 3]>>,
 }
 
@@ -71,8 +71,8 @@ impl<T: Real> Form<T> {
         &self.factors
     }
 
-    /// Returns the form's error bound: no value of the form that is computed in the camera's window
-    /// is wrong by more.
+    /// Returns an upper bound of the error of every value of the form that is computed in the
+    /// camera's window.
     pub fn rad(&self) -> T::Radius {
         self.rad
     }

@@ -3,8 +3,8 @@
 //! In: a form over the view plane, and the rectangle. Out: the same form as a function of the
 //! offset from the rectangle's centre, in units of its sides, and the range of its values. One
 //! error bound holds for all values in the rectangle; it includes the errors of the form's factors
-//! and of its value at the centre, and the rounding errors of the evaluation. A sign that the range
-//! proves is therefore the sign at every sample in the rectangle.
+//! and of its value at the centre, and the rounding errors of the evaluation. If the range does not
+//! contain 0, the form has one sign at every sample in the rectangle.
 
 use super::{
     camera::{Camera, Direction},
@@ -18,10 +18,10 @@ use crate::{
 };
 
 /// Upper bound of the rounding error of a [`LocalForm`]'s value, divided by the sum of the absolute
-/// values of the form's factors. The value is four roundings: one for a factor itself, one for its
-/// division by the error bound ([`LocalForm::line`]), and two for the products and sums of the
-/// evaluation. The evaluation has more roundings, but they are relative to smaller numbers: offsets
-/// are at most ½, so a product is at most half of its factor.
+/// values of the form's factors. The bound is four roundings: one for a factor itself, one for its
+/// division by the error bound ([`LocalForm::line`]), and two for the evaluation. The evaluation
+/// has more than two roundings, but of smaller numbers: offsets are at most ½, so a product is at
+/// most half of its factor.
 const LINEAR_ROUNDING: f64 = 4.0 * f64::UNIT;
 /// Upper bound of the rounding error of a [`LocalQuadratic`]'s value, divided by the sum of the
 /// absolute values of the form's factors. The value is 16 roundings: at most five in the
@@ -166,7 +166,7 @@ impl LocalQuadratic {
     }
 
     /// Returns an interval that contains the form's values over the rectangle. It is the sum of the
-    /// ranges along each axis, widened by a bound of the mixed term.
+    /// ranges of the terms in x and of those in y, widened by a bound of the term in xy.
     pub fn range(&self) -> Interval {
         let [c, x, y, xx, xy, yy] = self.factors.map(|factor| 0.25 * factor);
         let c = 4.0 * c;

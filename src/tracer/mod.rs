@@ -4,12 +4,12 @@
 //! there, as an index into the palette of all colours. The tracer knows no text and no names: an
 //! object is its index in the file.
 //!
-//! All rays share the eye, so that everything happens in the view plane, where boundaries are lines
-//! and conics. Of the surfaces at a point, the nearest has the greatest inverse depth, which is a
-//! linear form for every flat surface. Everything that does not depend on the sample point is
-//! prepared once per picture, and a quadtree over the view plane finds the objects that a ray may
-//! hit. Every decision is made in `f64` with an error bound. If `f64` leaves doubt, the decision is
-//! made in double-double, and if this fails, in the highest precision, big numbers.
+//! All rays start at the eye. The tracer therefore works in the view plane, where boundaries of
+//! objects are lines and conics. The nearest surface at a point has the greatest inverse depth. The
+//! inverse depth of a flat surface is a linear form. Everything that does not depend on the sample
+//! point is prepared once per picture. A quadtree over the view plane finds the objects that a ray
+//! may hit. Every decision is made in `f64` with an error bound. If `f64` leaves doubt, the
+//! decision is made in double-double, and if doubt remains, in the highest precision, big numbers.
 
 mod camera;
 mod crossing;

@@ -1,9 +1,9 @@
 //! An object of any kind, prepared for one picture.
 //!
-//! In: an object of the scene, and the camera in one precision. Out: what the rest of the tracer
-//! needs of every kind of object: the crossings of a ray, the intervals of inverse depths over a
-//! rectangle of the picture, and the curves that bound the object. Each kind computes these in its
-//! own file; this file only selects among the kinds.
+//! In: an object of the scene, and the camera in one precision. Out: the crossings of a ray, the
+//! intervals of inverse depths over a rectangle of the picture, and the curves that bound the
+//! object. Each kind of object computes these in its own file; this file only selects among the
+//! kinds.
 
 use super::{
     camera::{Camera, Direction, Window},
@@ -23,8 +23,8 @@ use crate::{
     scene::{self, Shape, TriangleOutline},
 };
 
-/// The geometry of an object's surface. Each `match` on this type names every kind of surface, so
-/// that the compiler lists the places to complete when a kind is added.
+/// The geometry of an object's surface. Each `match` on this type names every kind of surface. When
+/// a kind is added, the compiler therefore lists all code that must handle it.
 pub enum SurfaceKind<'a, T: Real> {
     /// Flat faces.
     Flat(&'a Convex<T>),
@@ -38,8 +38,8 @@ pub enum SurfaceKind<'a, T: Real> {
 pub enum Object<T: Real> {
     /// A sphere.
     Sphere(Sphere<T>),
-    /// A triangle, a box, or one face of a box. A triangle or a single face is invisible if its
-    /// plane contains the eye; its list of faces is then empty.
+    /// A triangle, a box, or one face of a box. Also an invisible object, without faces: a
+    /// triangle, a single face or a checkerboard whose plane contains the eye.
     Convex(Convex<T>),
     /// A checkerboard.
     Checkerboard(Box<Checkerboard<T>>),

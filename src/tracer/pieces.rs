@@ -1,8 +1,8 @@
 //! Division of boxes with coloured faces into single faces.
 //!
-//! In: a scene. Out: a new scene, in which the visible faces of each such box replace the box; and
-//! for each object of the new scene, the index of its original object. The tracer treats each face
-//! as a flat object. Two faces that share an edge compute exactly the same line for the edge, so
+//! In: a scene. Out: a new scene, in which each box with coloured faces is replaced by its visible
+//! faces; and for each object of the new scene, the index of its original object. The tracer treats
+//! each face as a flat object. For an edge of two faces, both compute exactly the same line, so
 //! that no ray passes between them.
 
 use std::{array, borrow::Cow, sync::Arc};
@@ -27,8 +27,8 @@ pub(super) struct Pieces(Vec<(usize, Option<u8>)>);
 
 impl Pieces {
     /// Divides every box with coloured faces into the faces that `which` selects. Returns the new
-    /// scene and, for each of its objects, the original object. Returns `scene` itself if it has no
-    /// such box.
+    /// scene and, for each of its objects, the original object. Returns `scene` itself if no box
+    /// has coloured faces.
     pub fn of(scene: &Scene, which: Faces) -> (Cow<'_, Scene>, Self) {
         let box_with_faces = |object: &Object| {
             let cuboid = object.shape.cuboid()?;

@@ -32,7 +32,7 @@ pub struct Hit {
     pub point: DVec3,
     /// The colour at the point.
     pub color: Color,
-    /// Whether this crossing is the one that is seen in the picture.
+    /// Whether the picture shows this crossing.
     pub visible: bool,
 }
 
@@ -106,8 +106,8 @@ fn sort(geometry: &Geometry, crossings: &mut [(usize, bool, Crossing<Big>)]) {
     }
 }
 
-/// Wraps a coordinate of a ray's direction, or its squared length, in a ball whose radius covers up
-/// to 32 roundings.
+/// Returns a coordinate of a ray's direction, or its squared length, with an error bound for up to
+/// 32 roundings.
 fn rounded(x: &Big) -> Ball<Big> {
     Ball {
         rad: x.magnitude() * (32.0 * Big::UNIT),
@@ -115,8 +115,8 @@ fn rounded(x: &Big) -> Ball<Big> {
     }
 }
 
-/// Returns the nearest `f64`, or 0 if the number cannot be distinguished from 0. If such numbers
-/// were not replaced by 0, a point in the plane y = 0 might be printed with a height of 1e-97.
+/// Returns the nearest `f64`, or 0 if the number cannot be distinguished from 0. Without this, a
+/// point in the plane y = 0 might be printed with a height of 1e-97.
 fn settled(x: &Ball<Big>) -> f64 {
     match x.sign() {
         Ok(Ordering::Equal) => 0.0,

@@ -105,8 +105,8 @@ impl<T: Real> Sphere<T> {
     }
 
     /// Returns two numbers for the ray of direction `r`: Q, a quarter of the discriminant of the
-    /// equation for the crossings, and the scalar product of the sphere's centre and `r`. Both are
-    /// defined in [`Sphere`].
+    /// equation for the crossings, and the scalar product of the sphere's centre and `r`. The
+    /// letters are those of [`Sphere`].
     #[inline]
     fn discriminant(&self, r: &Direction<T>) -> (Ball<T>, Ball<T>) {
         let [cx, cy, cz] = &self.center;
@@ -172,15 +172,15 @@ impl<T: Real> Sphere<T> {
 
     /// Returns the crossing where the ray leaves the sphere. `q` is a quarter of the discriminant
     /// of the equation for the crossings, and `b` the scalar product of the centre and the ray's
-    /// direction ([`Sphere`]). Of two equal formulas for the inverse depth, the one that does not
-    /// cancel is used.
+    /// direction ([`Sphere`]). Two formulas give the inverse depth; the one that loses no digits by
+    /// cancellation is used.
     fn exit(&self, q: &Ball<T>, b: &Ball<T>, r: &Direction<T>) -> Crossing<T> {
         let square = Ball {
             rad: r.square.magnitude() * (SPHERE_ROUNDINGS * T::UNIT) + T::TINY * 8.0,
             mid: r.square.clone(),
         };
-        // Close to the inner surface of a huge sphere, Q is much smaller than R² r·r. There, Q is
-        // computed more accurately as (c·r)² − (r·r) C.
+        // Close to the inner surface of a huge sphere, Q is much smaller than R² r·r (letters as in
+        // `Sphere`). There, Q is computed more accurately as (c·r)² − (r·r) C.
         let other = b * b - &self.power * &square;
         let root = if other.rad < q.rad { &other } else { q }.sqrt();
         let inverse = if b.mid.is_negative() {
@@ -265,9 +265,10 @@ impl Sphere<f64> {
         //
         // 1/λ = r·r/(b + √Q) = (√Q − b)/(−C),
         //
-        // falls as b grows. If b may be ≤ 0, the first formula gives no upper bound, because the
-        // least possible denominator may be 0 or negative. If the eye is inside the sphere, the
-        // second formula then gives the upper bound. Otherwise, the upper bound is infinite.
+        // falls as b = c·r grows (c, Q and C as in `Sphere`). If b may be ≤ 0, the first formula
+        // gives no upper bound, because the least possible denominator may be 0 or negative. If the
+        // eye is inside the sphere, the second formula then gives the upper bound. Otherwise, the
+        // upper bound is infinite.
         let reach = |i: usize, at: f64| {
             let half = 0.5 * patch.sides[i];
             (at.abs() + half, (at.abs() - half).max(0.0))
@@ -329,8 +330,8 @@ impl Sphere<f64> {
 
     /// Returns the factor 1/C in the inverse depth (c·r + √Q)/C of the sphere's near side
     /// ([`Sphere`]), in the world's unit, and a bound on the factor's relative error. Returns
-    /// `None` if the eye is not outside, or if the relative error of C is 1/4 or more. Below 1/4,
-    /// the relative error of 1/C is at most twice that of C.
+    /// `None` if the eye is not outside the sphere, or if the relative error of C is 1/4 or more.
+    /// Below 1/4, the relative error of 1/C is at most twice that of C.
     pub fn depth_factor(&self) -> Option<(f64, f64)> {
         let error = self.power.rad / self.power.size() + SPHERE_ROUNDINGS * f64::UNIT;
         (self.is_outside() && error < 0.25).then(|| (self.scale / self.power.mid, 2.0 * error))
@@ -418,8 +419,8 @@ impl Sphere<Double> {
 }
 
 /// Computes C = c·c − R² ([`Sphere`]) with a small relative error, and returns it with its exact
-/// sign. `from_eye` and `square` contain lengths that were multiplied by 2^`exponent`. C is scaled
-/// accordingly: it is multiplied by the square of this factor.
+/// sign. The lengths in `from_eye` and `square` were multiplied by 2^`exponent`. The result is
+/// therefore C times the square of this factor.
 fn power<T: Real>(
     eye: DVec3,
     center: DVec3,

@@ -69,8 +69,8 @@ impl SceneGenerator {
             ),
             3 | 4 => triangle(at, self.vector(1.0), dvec3(2.0, 2.0, 1.0) * size.x),
             5 | 6 => cuboid(at - size, at + size),
-            // The eye lies in the plane of a face in case 7, on the surface in case 8, and inside
-            // in case 9.
+            // The eye lies in the plane of a box's face in case 7, on the surface of a sphere in
+            // case 8, and inside a sphere in case 9.
             7 => cuboid(dvec3(eye.x, at.y, at.z), dvec3(eye.x, at.y, at.z) + size),
             8 => sphere(eye + dvec3(0.0, 0.0, -size.x), size.x),
             9 => sphere(eye + size * 0.25, size.max_element()),
@@ -171,8 +171,8 @@ fn the_quadtree_changes_nothing() {
     }
 }
 
-/// Checks that `f64` alone decides every one of many random samples. A higher precision would take
-/// a hundred times as long. In the second scene, two objects lie in one plane. In general, `f64`
+/// Checks that `f64` alone decides all of many random samples. A higher precision would take a
+/// hundred times as long. In the second scene, two objects lie in one plane. In general, `f64`
 /// leaves at most about 1e-10 of all samples undecided, in the rows at the horizon, so no undecided
 /// sample is expected among the 40,000 tested.
 #[test]
@@ -344,7 +344,7 @@ fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
 #[test]
 fn very_many_objects() {
     // There are enough objects for several threads to prepare them. Half of the objects are spread
-    // over the whole picture, and half lie in one place.
+    // over the whole picture, and half lie in a cluster far smaller than a pixel.
     let mut random = SceneGenerator::new(1);
     let eye = DVec3::ZERO;
     let mut stage = scene(camera(eye, dvec3(0.0, 0.0, -1.0)), &[sphere(eye, 1.0)]);

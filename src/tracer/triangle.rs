@@ -119,8 +119,8 @@ fn exponent_of<T: Real>(points: &[Ball3<T>]) -> i32 {
 }
 
 /// Returns the vertices of a triangle in world coordinates, as the scene gives them. For a triangle
-/// given by its centroid, computes the left end of the base, the right end, and the apex, each
-/// coordinate rounded once.
+/// given by its centroid, computes its vertices: the left end of the base, the right end, and the
+/// apex. Each coordinate is rounded once.
 pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
     let shape = match &shape.outline {
         TriangleOutline::Vertices(vertices) => return *vertices,

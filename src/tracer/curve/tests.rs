@@ -1,6 +1,5 @@
-//! Compares the doubtful area of a conic with an estimate: the number of grid points that lie in
-//! this area. The doubtful area is the part of a pixel in which the conic's error leaves open on
-//! which side of the conic a point lies.
+//! Compares [`Conic::doubtful_area`] with an estimate from grid points. A point lies in the
+//! doubtful area if the conic's error leaves open on which side of the conic it lies.
 
 use std::cell::RefCell;
 
@@ -9,8 +8,7 @@ use proptest::{prelude::*, test_runner::TestRunner};
 use super::*;
 use crate::reference::tightness::Tightness;
 
-/// Number of rows, and of columns, of the grid of points in a pixel. The points in the doubtful
-/// area are counted.
+/// Number of rows, and of columns, of the grid of points in a pixel.
 const POINTS: i32 = 300;
 
 /// Tightness of the three bounds whose minimum is [`Conic::doubtful_area`].
@@ -46,8 +44,8 @@ fn doubtful_areas_of_conics_are_tight() {
     );
     TestRunner::default()
         .run(&cases, |([a, b, c, d, e, f], [p, q], kind, rad)| {
-            // Conics that are nearly lines, ellipses within the pixel, and pairs of lines that meet
-            // in it.
+            // Kind 0 is nearly a line, kind 1 an ellipse, and kind 2 a pair of lines, one of them
+            // through the pixel's centre.
             let factors = match kind {
                 0 => [0.1 * a, 0.1 * b, 0.1 * c, 0.5, 0.5 * e, 0.2 * f],
                 1 => [p, 0.5 * b * p.min(q), q, 0.02 * d, 0.02 * e, -0.03],

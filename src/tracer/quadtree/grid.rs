@@ -57,8 +57,8 @@ pub struct CellGrid {
 }
 
 impl Nearness {
-    /// A value that is less than the nearness of every object. Used as a limit below which objects
-    /// are hidden, it hides none.
+    /// A value that is less than the nearness of every object. As the limit below which objects are
+    /// hidden, it hides no object.
     pub const NONE: Self = Self(0);
 
     /// Rounds a non-negative number up. Returns the greatest value for NaN and negative numbers.

@@ -1,17 +1,17 @@
 //! The objects that rays through a point of the view plane may hit: a quadtree over the objects'
 //! bounds in the view plane.
 //!
-//! All rays share the eye, so that a ray is a point of the view plane and lies in exactly one cell
+//! All rays start at the eye, so each ray is a point of the view plane and lies in exactly one cell
 //! of each level. The search for a ray therefore follows a single path from the root cell down. An
 //! object is listed in the cells that it overlaps on the level where cells are about as large as
-//! the object. There are at most four such cells, so that the lists have at most four entries per
-//! object, whatever the objects look like. Each list is sorted by the objects' maximum inverse
-//! depth ([`Nearness`]), the greatest first. A ray that has hit an object stops reading a list at
-//! the first entry behind this object.
+//! the object. There are at most four such cells, so the lists have at most four entries per
+//! object, whatever its shape. Each list is sorted by the objects' maximum inverse depth
+//! ([`Nearness`]), the greatest first. If the ray has hit an object, the search stops reading a
+//! list at the first entry behind this object.
 //!
-//! Cells have coordinates in whole numbers, and the conversion to them is monotone. The conversion
-//! can move a point of an object out of the object's bounds by one unit, but not by more. Bounds
-//! are therefore widened by one unit.
+//! Coordinates of cells are whole numbers. Rounding to whole numbers keeps the order of
+//! coordinates, but may move a point of an object out of the object's bounds, by at most one unit.
+//! Bounds are therefore widened by one unit.
 
 mod grid;
 mod point_query;
@@ -26,7 +26,7 @@ use super::{camera::Direction, local_form::Patch};
 pub use self::grid::{BoundedObject, CellGrid, Nearness, Rectangle};
 pub use self::tree::OBJECTS_A_CELL;
 
-/// The visible objects, by their bounds in the view plane.
+/// Quadtree over the bounds, in the view plane, of all objects that rays may hit.
 #[derive(Debug)]
 pub struct Quadtree {
     grid: CellGrid,

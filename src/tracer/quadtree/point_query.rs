@@ -1,9 +1,8 @@
 //! The point query: the objects that one ray may hit.
 //!
 //! In: a point in the grid. Out: the objects of the cells that contain the point, from the root
-//! cell down. Each cell lists its objects from the nearest to the farthest. The search stops
-//! reading a list at the first object that is entirely behind a point where the ray has hit another
-//! object.
+//! cell down. Each cell lists its objects from the nearest to the farthest. If the ray has hit an
+//! object, the search stops reading a list at the first object that is entirely behind this hit.
 
 use super::{
     grid::{BoundedObject, LEVELS, Nearness},

@@ -14,7 +14,8 @@ use crate::cancel;
 /// render time of 10⁵ spheres changes by at most 5 %.
 pub const OBJECTS_A_CELL: usize = 32;
 
-/// All cells of a quadtree, and the entries of their lists. The first cell is the root.
+/// All cells of a quadtree, and the objects in their lists, one list after another. The first cell
+/// is the root.
 #[derive(Debug)]
 pub(super) struct Cells {
     pub(super) cells: Vec<Cell>,
@@ -25,9 +26,9 @@ pub(super) struct Cells {
 pub(super) struct Cell {
     /// Index of the first of the four quarters, or 0 if the cell is not divided.
     pub(super) quarters: u32,
-    /// Start of the cell's list among the entries.
+    /// Index in [`Cells::entries`] of the first object in the cell's list.
     pub(super) start: u32,
-    /// End of the cell's list among the entries: the index after its last entry.
+    /// Index in [`Cells::entries`] after the last object in the cell's list.
     pub(super) end: u32,
     /// Maximum of the rounded inverse depths of the objects listed in this cell and in all cells
     /// below it.
@@ -89,7 +90,7 @@ impl Cells {
         }
     }
 
-    /// Appends the objects `items` to the entries as the list of a cell, the nearest first.
+    /// Stores the objects `items` as the list of a cell, the nearest first.
     fn list(&mut self, cell: usize, items: &[BoundedObject]) {
         let start = self.entries.len();
         self.entries.extend_from_slice(items);

@@ -9,10 +9,10 @@
 //!
 //! Quartering also ends if an area has too many candidates: finding out where each is seen would
 //! take longer than tracing the area's samples one by one. Sampled and exact pictures share this
-//! method, because what is certain for a part holds for every ray through it.
+//! method: if an area certainly shows one colour, every ray through the area sees this colour.
 //!
-//! Areas belong to one fixed grid over the whole picture, whatever part of it is wanted, so that a
-//! pixel's candidates do not depend on this part.
+//! Areas belong to one fixed grid over the whole picture. A pixel's candidates therefore do not
+//! depend on which part of the picture is wanted.
 
 #[cfg(test)]
 mod tests;
@@ -32,18 +32,19 @@ use crate::area::Area;
 /// the maximum side of a block of pixels whose checkerboard is computed at once.
 pub const GRID: u32 = checker_corners::SIDE as u32;
 
-/// Minimum ratio of samples to candidate objects in an area of more than four pixels. If the ratio
-/// is smaller, the area is not quartered further. Measured: with 8, the time for 10³ and 10⁵
-/// spheres changes by less than 10 %, but 3000 slivers with one sample per pixel take twice as
+/// Minimum ratio of samples to candidate objects at which an area of more than four pixels is
+/// quartered further. The value was chosen by measuring render times. With 8, the time for 10³ and
+/// 10⁵ spheres changes by less than 10 %, but 3000 slivers with one sample per pixel take twice as
 /// long. With 2, the time rises by up to 25 %.
 const SAMPLES_A_CANDIDATE: f64 = 4.0;
 
-/// Time to find out where one candidate object is seen within an area of pixels. The unit is the
-/// time to test one sample against one object. An area with more than [`OBJECTS_A_CELL`] candidates
-/// is quartered only if this time for all candidates is at most that of tracing all samples one by
-/// one. Tracing a sample takes one unit for each object whose bounds contain it, and one unit for
-/// the search of the quadtree. Measured: with 80, 10⁴ spheres on 320×180 pixels take 10 % longer;
-/// with 200, they take 2 % longer on 640×360 pixels.
+/// Cost of finding out where one candidate object is seen within an area of pixels. The unit is the
+/// cost of testing one sample against one object. An area with more than [`OBJECTS_A_CELL`]
+/// candidates is quartered only if the cost for all its candidates is at most the cost of tracing
+/// all its samples one by one. Tracing a sample costs one unit for each object whose bounds contain
+/// it, and one unit for the search of the quadtree. The value was chosen by measuring render times.
+/// With 80, 10⁴ spheres on 320×180 pixels take 10 % longer; with 200, they take 2 % longer on
+/// 640×360 pixels.
 const ASKED_A_CANDIDATE: f64 = 120.0;
 
 /// Subdivision of one picture into parts.
@@ -51,7 +52,7 @@ const ASKED_A_CANDIDATE: f64 = 120.0;
 pub struct Quartering<'a> {
     world: &'a World,
     /// Mean number of samples per pixel of the picture. It is infinite for a picture that is
-    /// computed exactly, so that no part is given up as [`Crowded`](PicturePart::Crowded).
+    /// computed exactly, so that no part becomes [`Crowded`](PicturePart::Crowded).
     samples: f64,
 }
 
@@ -78,8 +79,8 @@ pub enum PicturePart<'a> {
         /// too uncertain for sampling.
         checks: Option<&'a CheckerPixel>,
     },
-    /// An area with so many candidates that it takes longer to find where each is seen than to
-    /// trace the samples one by one. So its samples are traced one by one.
+    /// An area whose samples are traced one by one. It has so many candidates that finding out
+    /// where each is seen would take longer.
     Crowded {
         /// The part's area.
         area: Area,
@@ -214,9 +215,9 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
             _ => {}
         }
         let is_worth_more = candidates.len() <= self.quartering.most(area);
-        // If there are at most as many candidates as a cell of the quadtree lists, testing all
-        // candidates is no slower than tracing each sample on its own, because a sample that is
-        // traced on its own is tested against the objects of a cell.
+        // A sample that is traced on its own is tested against the objects of a quadtree cell, up
+        // to `OBJECTS_A_CELL`. With at most this number of candidates, testing all of them is no
+        // slower.
         if !is_worth_more && candidates.len() > OBJECTS_A_CELL {
             return self.show(PicturePart::Crowded { area });
         }

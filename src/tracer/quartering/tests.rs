@@ -106,9 +106,9 @@ fn what_a_wall_hides_is_not_found() {
     }
 }
 
-/// Checks that each sample point of a crowded scene gets the same colour whether only the objects
-/// that `nearby` finds are tested, or the quadtree is searched. The test also requires that some
-/// pixels are recognized as single-coloured.
+/// Checks the colours of sample points of a crowded scene. Testing only the objects that `nearby`
+/// finds must give the same colours as searching the quadtree. Some pixels must be recognized as
+/// single-coloured.
 #[test]
 fn of_a_crowd_the_objects_nearby_are_enough() {
     let mut shapes = thousand_spheres(9.0);

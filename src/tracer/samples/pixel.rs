@@ -17,8 +17,8 @@ pub(super) const BACKGROUND: f64 = 0.0;
 /// Code, in [`Lanes::seen`], of an uncertain sample, which is traced again on its own.
 pub(super) const DOUBT: f64 = -1.0;
 
-/// The objects of one pixel, prepared for many samples. One value is reused for all pixels, to keep
-/// its allocations.
+/// The objects of one pixel, prepared for many samples. One instance is reused for all pixels, so
+/// that its lists need not be allocated again.
 #[derive(Debug, Default)]
 pub struct PreparedPixel {
     /// The objects that may be seen in the pixel.
@@ -107,8 +107,8 @@ pub(super) enum Depth {
     },
 }
 
-/// Values of the samples of a chunk, with one array for each quantity. They are aligned, because
-/// numbers that are stored across two cache lines are loaded late.
+/// Values of the samples of a chunk, with one array for each quantity. The arrays are aligned,
+/// because loading vectors that cross a cache line takes longer.
 #[derive(Debug)]
 #[repr(align(64))]
 pub(super) struct Lanes {

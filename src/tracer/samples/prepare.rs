@@ -21,16 +21,16 @@ use super::{
 };
 use crate::{area::Area, math::UP};
 
-/// Maximum error bound of a checkerboard's linear forms in a pixel. The bound contains the rounding
-/// errors of the forms' factors, which are therefore at most 2^51 times the bound. So with this
-/// limit, products of factors with the indices of squares, which are below 2^53, cannot overflow.
-/// If a bound is larger, the pixel's samples are traced one by one.
+/// Maximum error bound of a checkerboard's linear forms in a pixel. The bound covers the rounding
+/// errors of the forms' factors, so a factor is at most 2^51 times the bound. With this limit, the
+/// product of a factor and the index of a square (below 2^53) cannot overflow. If a bound is
+/// larger, the pixel's samples are traced one by one.
 const MAX_ERROR: f64 = 1e250;
 
 /// Maximum number of lines between squares in a pixel for which a sample's colour is found by
 /// testing on which side of each line the sample lies. With more lines, a division computes which
-/// square a sample hits. Measured: from 3 to 12, the render time does not change; with division
-/// alone, figure 9.9, the picture of the assignment, takes 11 % longer.
+/// square a sample hits. By measurement, values from 3 to 12 give equal render times. With division
+/// alone, figure 9.9 (the picture of the assignment) takes 11 % longer.
 const MAX_LINES: usize = 6;
 
 /// Error of a preparation that fails, so that the pixel's samples must be traced one by one.
@@ -219,18 +219,17 @@ impl PreparedPixel {
             let mut k = first + 1.0;
             while k <= last {
                 let line = across.less(k, below);
-                // `line` is a form that is zero on the line with the number k between squares: a
-                // positive multiple of x/square − k, or of z/square − k. If the form is positive in
-                // the whole pixel, the first of the pixel's squares lies beyond this line. So
-                // `odd`, the parity of this square, is negated.
+                // The form `line` is zero on line number k between squares, and positive beyond it,
+                // where x/square or z/square is greater than k. If it is positive in the whole
+                // pixel, the whole pixel lies beyond the line, so the parity `odd` is negated.
                 match line.range().side() {
                     Side::Above => odd = !odd,
                     Side::Below => {}
                     Side::Both => {
                         self.lines.push(line.line());
-                        // The line crosses the pixel. `odd` becomes the parity of the square in
-                        // which the forms of all added lines, including this one, are positive.
-                        // This square lies beyond the line, so `odd` is negated.
+                        // The line crosses the pixel. `odd` is the parity of the square in which
+                        // the forms of all added lines are positive. This square lies beyond the
+                        // line, so `odd` is negated.
                         odd = !odd;
                     }
                     Side::Unknown => return Err(Hard),
@@ -292,8 +291,8 @@ impl PreparedPixel {
         for plane in &self.planes {
             rad = rad.max(plane.rad);
         }
-        // `apart` covers the errors of both inverse depths that are compared. `rad` includes the
-        // rounding of the comparison.
+        // A comparison of two inverse depths is wrong by at most the errors of both, 2 · `rad`.
+        // `rad` includes the rounding error of the comparison.
         let apart = 2.0 * rad * UP;
         if !apart.is_finite() {
             return Err(Hard);

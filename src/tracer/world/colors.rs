@@ -43,9 +43,9 @@ impl Colors {
         }
     }
 
-    /// Gives each owner a palette entry of its own, with an arbitrary colour. `owners` contains,
-    /// for each prepared object, the index of its owner, the object of the file to which it
-    /// belongs. The faces of a box have the same owner, the box.
+    /// Gives each owner a palette entry of its own, with an arbitrary colour. `owners` yields the
+    /// index of the owner of each prepared object. If the owners are objects of the file, all faces
+    /// of a box have the same owner, the box.
     pub(super) fn by_object(owners: impl Iterator<Item = usize>) -> Self {
         let of_objects: Vec<_> = owners.map(|owner| [owner as u32; 2]).collect();
         let count = of_objects

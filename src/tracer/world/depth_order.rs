@@ -1,4 +1,4 @@
-//! The depth order of two crossings. Two crossings in one surface are equal.
+//! The depth order of two crossings. Crossings in one surface count as equal.
 //!
 //! In: two crossings of one ray. Out: the order of their inverse depths, or doubt if rounding
 //! errors leave it uncertain.

@@ -97,8 +97,8 @@ impl World {
     ///
     /// # Panics
     ///
-    /// If a condition is broken, this function may panic. If this function does not panic, the
-    /// picture is wrong.
+    /// If a condition of the language is broken, this function may panic, or the picture may be
+    /// wrong.
     pub fn new(scene: &Scene) -> Self {
         Self::build(scene, Faces::Seen, reach(scene), &cancel::NEVER)
     }
@@ -242,9 +242,9 @@ impl World {
         let among = || among.clone();
         let (mut seen, is_sure) = first_certain!(&self.geometry, point, |r| self.seen(r, among()));
         if !is_sure {
-            // The lower precisions were uncertain, so the highest precision has decided. It treats
-            // a ray that cannot be distinguished from one that hits an object as a hit, even if the
-            // ray is outside of the object's bounds in the quadtree. Some callers pass only objects
+            // The lower precisions were uncertain, so the highest precision has decided. If it
+            // cannot distinguish a ray from one that hits an object, it counts the ray as a hit,
+            // even outside of the object's bounds in the quadtree. Some callers pass only objects
             // whose bounds contain the ray, and others pass all objects. To give all callers the
             // same answer, objects whose bounds do not contain the ray are left out.
             let near = self.candidates(point);

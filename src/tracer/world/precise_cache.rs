@@ -19,9 +19,10 @@ pub const CACHE_SLOTS: usize = 4093;
 /// A cache of objects in one precision. Each object is prepared when it is first requested, and
 /// kept until another object takes its slot.
 ///
-/// Preparing an object takes far longer than testing a ray against it. If a decision about an
-/// object is uncertain in `f64` at one sample point, it often is at neighbouring points, too. The
-/// fixed number of slots bounds the memory, however many objects a scene has.
+/// Objects are cached because preparing an object takes far longer than testing a ray against it.
+/// If a decision about an object is uncertain in `f64` at one sample point, it is often uncertain
+/// at neighbouring points, too. The fixed number of slots bounds the memory, however many objects a
+/// scene has.
 #[derive(Debug)]
 pub struct ObjectCache<T: Real>(Vec<Mutex<Option<Arc<CachedObject<T>>>>>);
 
