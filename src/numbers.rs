@@ -57,8 +57,8 @@ pub fn at_most(bound: f64) -> String {
 }
 
 /// Formats a number so that a reader can compare it with the numbers `others`. Uses the form of
-/// [`short`] if it preserves the order (less, equal or greater) to each of the others. Otherwise,
-/// uses all digits.
+/// [`short`] unless its rounding changes whether the number is less than, equal to or greater than
+/// one of `others`. In this case, uses all digits.
 pub fn beside(x: f64, others: &[f64]) -> String {
     let text = short(x);
     let read = text.parse().unwrap_or(x);

@@ -201,7 +201,7 @@ impl Round {
         }
     }
 
-    /// Returns the problem with the offset that it has after the edits of this round.
+    /// Returns a copy of the problem whose `start` is the offset after the edits of this round.
     fn moved(&self, problem: &Problem) -> Problem {
         let grown: isize = self
             .growth

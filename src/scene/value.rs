@@ -1,8 +1,8 @@
 //! Computes operators and functions on values.
 //!
-//! The functions here know no places in the text. They return a result, or `None` if the types do
-//! not fit, and the caller reports the problem at its place. Infinite and NaN results are returned
-//! as they are; the caller reports them, too.
+//! The functions here do not know where their operands stand in the text. They return a result, or
+//! `None` if the types do not fit. The caller reports the problem with its span. Infinite and NaN
+//! results are returned as they are; the caller reports them, too.
 
 use glam::DVec3;
 

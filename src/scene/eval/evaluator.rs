@@ -182,9 +182,9 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     /// Searches `value`, a part of the file, for a name that a `--set` argument of the command line
-    /// defines. Returns the first such name, and the span of its value in the argument. Returns
-    /// `None` if there is no such name. Otherwise, a mistake in `value` must be corrected in the
-    /// argument, not in the file.
+    /// defines. Returns the first such name, and the span of its value in the argument. A mistake
+    /// in `value` must then be corrected in the argument, not in the file. Returns `None` if
+    /// `value` has no such name.
     pub(super) fn set_in(&self, value: &tree::Value<'s>) -> Option<(&'s str, Span)> {
         let ValueKind::Name(name) = value.kind else {
             return value.parts().into_iter().find_map(|part| self.set_in(part));

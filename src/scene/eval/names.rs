@@ -27,9 +27,8 @@ pub struct Names<'s> {
     pub(super) defined: HashMap<&'s str, Defined>,
     /// The names of `defined`, in the order of their definitions.
     order: Vec<&'s str>,
-    /// Words in parts of the file that could not be parsed. Each such part was reported. Its words
-    /// may be names that the author meant to define there, so these names are not reported as
-    /// undefined.
+    /// Words of the text that could not be parsed. The text was reported as an error. It may
+    /// contain definitions of names, so uses of these words are not reported as undefined.
     pub(super) parts: HashSet<&'s str>,
     /// Span of the name in each definition of the file, including definitions below the current
     /// place.
@@ -43,7 +42,7 @@ pub struct Names<'s> {
     /// Number of comparisons that may still be made between undefined names and known ones, in
     /// search of the most similar known name.
     budget: ComparisonBudget,
-    /// Problems of undefined names. They are kept apart because some of the other problems are
+    /// Problems of undefined names. Other problems are kept elsewhere, because some of them are
     /// discarded when a value is evaluated again.
     pub(in crate::scene) problems: RefCell<Problems>,
     /// Names that were reported as undefined. Further uses become labels of the same problem.
@@ -186,9 +185,9 @@ impl<'s> Names<'s> {
         self.definitions.get(name).copied()
     }
 
-    /// Returns the names that are defined so far, with which an undefined name is to be compared.
-    /// The total number of such comparisons is limited; this function deducts one for each known
-    /// name from the number that remains. Returns `None` if too few remain.
+    /// Returns the names that are defined so far, for comparison with an undefined name. Deducts
+    /// one comparison for each of them from [`Self::budget`], which limits the total time. Returns
+    /// `None` if too few comparisons remain.
     pub(super) fn to_compare(&self) -> Option<&[&'s str]> {
         // Approximate number of predefined colours and constants. An undefined name is compared
         // with them too. An estimate is enough, because it only limits the number of searches.
