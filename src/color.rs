@@ -1,4 +1,4 @@
-//! Colours: sRGB, as in the scene language, and linear light, in which samples are averaged.
+//! Colours in sRGB, as in the scene language, and in linear light, in which samples are averaged.
 
 use std::fmt;
 
@@ -34,10 +34,10 @@ impl Color {
     pub fn to_linear(self) -> [f64; 3] {
         self.srgb.map(|channel| {
             if channel.fract() == 0.5 {
-                // This channel lies halfway between two bytes, `channel as u8` and the next one.
-                // `to_bytes` rounds it up. `srgb_to_linear` might return a light that is slightly
-                // too dark and is rounded down, so `half_byte` is used instead: it returns the
-                // least light that is rounded up.
+                // This channel lies halfway between two bytes. `to_bytes` rounds it up, so its
+                // light must be rounded up, too. The result of `srgb_to_linear` might be slightly
+                // too dark and be rounded down. `half_byte` returns the least light that is rounded
+                // up.
                 half_byte(channel as u8)
             } else {
                 srgb_to_linear(channel / 255.0)
@@ -66,7 +66,7 @@ pub fn srgb_to_linear(encoded: f64) -> f64 {
 /// Returns the least linear light that is rounded to the byte `k` + 1 of sRGB, for `k` < 255. This
 /// is the light whose sRGB value is `k` + 1/2 in 8-bit steps, rounded up to an `f64`.
 ///
-/// Whether an `f64` is below that light can be decided with integers. The curve of sRGB raises a
+/// Integers suffice to decide whether an `f64` is below this light. The curve of sRGB raises a
 /// rational number x to the power 2.4. A positive light L is less than x^2.4 exactly if L^5 is less
 /// than x^12.
 pub fn half_byte(k: u8) -> f64 {
@@ -84,8 +84,8 @@ pub fn half_byte(k: u8) -> f64 {
 /// 1/2, in 8-bit steps. `light` must be positive and not subnormal.
 fn is_below_half(light: f64, k: u8) -> bool {
     // Bound on the relative rounding error of `difference` below. The difference is computed in
-    // double-doubles (sums of two `f64`), which decide most cases. If all cases were decided with
-    // integers, this would need half the time of rendering a small picture.
+    // double-doubles (sums of two `f64`), which decide most cases. Integers could decide all cases,
+    // but this would take half the time of rendering a small picture.
     //
     // In multiples of the unit roundoff of a double-double, the relative errors are at most 4 for
     // light^5, 11 for scale^12, 1 for the product of these two powers, 11 for x^12, and 1 for the

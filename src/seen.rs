@@ -98,8 +98,8 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
 }
 
 /// Maximum number of objects that the readable output of `inspect` lists. For each listed object
-/// that is hidden, the output also names the object in front. A list of many more objects would
-/// hardly be read by a person; the JSON output contains all objects.
+/// that is hidden, the output also names the object in front. Hardly anybody would read a much
+/// longer list; the JSON output contains all objects.
 pub const LISTED: usize = 100;
 
 /// Map from an object's index to the bounding rectangle of the pixels that show the object, and to

@@ -58,7 +58,8 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
     let mut sources = sources.clone();
     let mut problems = read(&sources).diagnostics;
     let mut done = Vec::new();
-    // Problems that remained although their fixes were applied. These fixes are not applied again.
+    // Problems that remained although their fixes were applied. These fixes are not applied again
+    // until other fixes have changed the text.
     let mut staying: HashSet<Problem> = HashSet::new();
     let mut seen = HashSet::new();
     // A fixed text would lose bytes that are not UTF-8, so such a text is not fixed.

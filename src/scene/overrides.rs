@@ -280,7 +280,7 @@ fn objects<'s>(items: &[Item<'s>]) -> Vec<&'s str> {
 const OTHERS: &str = "name a `let` of the scene, or a field by `BLOCK.FIELD=…`";
 
 /// Maximum number of names that a help text lists. If there are more, the help lists none of them,
-/// since a longer list would no longer be read.
+/// since nobody would read a longer list.
 const FEW: usize = 8;
 
 /// Returns the error for a `--set` target whose block is not in the file and cannot be added.

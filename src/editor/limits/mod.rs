@@ -59,7 +59,7 @@ pub struct Slider<'a> {
     /// Span of the number without its unit. If the value is not a number, the span of the whole
     /// value.
     pub span: Span,
-    /// Limits of the slider; `None` if the value is not a number, so that there is no slider.
+    /// Limits of the slider; `None` if there is no slider, because the value is not a number.
     pub limits: Option<Limits>,
     /// Message for the author, if the comment after the definition looks like a range but is not
     /// one, or if the slider's range differs from the range in the comment.
@@ -213,7 +213,7 @@ struct Bounds {
     is_whole: bool,
 }
 
-/// Bounds of a number that is subject to no known condition.
+/// Bounds of a number on which no condition is known.
 const UNBOUNDED: Bounds = Bounds {
     least: f64::NEG_INFINITY,
     most: f64::INFINITY,

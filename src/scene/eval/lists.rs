@@ -134,8 +134,8 @@ impl<'s> Evaluator<'_, 's> {
 
 /// Returns an example for the missing third coordinate of a vector whose other coordinates are `x`
 /// and `y`: the greater of `x` and `y`, or 1 if both are 0, because a zero vector has no direction.
-/// If the vector is the `sides` of a triangle, two positive lengths and the greater of them always
-/// form a triangle. Returns `None` if `x` or `y` is not a number.
+/// If the vector is the `sides` of a triangle, this choice makes a triangle of any two positive
+/// lengths. Returns `None` if `x` or `y` is not a number.
 fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
     let (a, b): (f64, f64) = (x.parse().ok()?, y.parse().ok()?);
     Some(match (a > b, a == 0.0 && b == 0.0) {

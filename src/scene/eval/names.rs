@@ -1,4 +1,4 @@
-//! Keeps the names that are defined at the current place of the text, and the reports about names.
+//! Keeps the names that are defined so far while a scene is evaluated, and the reports about names.
 
 use std::{
     cell::RefCell,
@@ -20,7 +20,7 @@ use crate::{
     },
 };
 
-/// Names that are defined at the current place of the text, and the reports about names.
+/// Names that are defined so far while a scene is evaluated, and the reports about names.
 #[derive(Debug, Default)]
 pub struct Names<'s> {
     /// Values of the `let`s and of the indices (counters of a `for`) that are defined so far.
@@ -30,8 +30,8 @@ pub struct Names<'s> {
     /// Words of the text that could not be parsed. The text was reported as an error. It may
     /// contain definitions of names, so uses of these words are not reported as undefined.
     pub(super) parts: HashSet<&'s str>,
-    /// Span of the name in each definition of the file, including definitions below the current
-    /// place.
+    /// Span of the name in each definition of the file, including definitions that are not
+    /// evaluated yet.
     definitions: HashMap<&'s str, Span>,
     /// Names of the file's objects. If one of them is used as a value, the report says that an
     /// object is no value.

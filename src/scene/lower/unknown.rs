@@ -22,8 +22,8 @@ use crate::{
 };
 
 /// Largest possible picture. It is used instead of the scene's image when a sampler is checked
-/// before the picture's size is known. A number of samples that is not too large for this picture
-/// is not too large for any other.
+/// before the picture's size is known. A number of samples that is allowed for this picture is
+/// allowed for every other picture, too.
 const LARGEST: Image = Image {
     width: 1 << 20,
     height: 1 << 20,
