@@ -71,8 +71,8 @@ pub fn beside(x: f64, others: &[f64]) -> String {
 }
 
 /// Rounds a number to the decimals that are meaningful for a given error: up to the first
-/// significant digit of the error, but at most 12 decimals. Returns `x` unchanged unless the error
-/// is positive and finite.
+/// significant digit of the error, but at most 12 decimals. Returns `x` unchanged if the error is
+/// not positive or not finite.
 pub fn rounded(x: f64, error: f64) -> f64 {
     if !(error > 0.0 && error.is_finite()) {
         return x;

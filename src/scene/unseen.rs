@@ -96,8 +96,8 @@ impl Outside {
     }
 }
 
-/// Returns whether samples cannot tell the squares of a visible board apart, so that all squares
-/// get the same colour.
+/// Returns whether samples cannot tell the squares of a visible board apart. All squares of the
+/// board then get the same colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
     // If the camera looks straight down or up, its up vector may be parallel to the view direction.
     // The rotation of the window about the view direction is then unknown. The window's sides are

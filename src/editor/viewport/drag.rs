@@ -183,10 +183,10 @@ pub fn drag(
         .and_then(|step| view.snapped(current, &changes, step));
     let tolerance = snapped.map_or(TOLERANCE, |(_, step)| step);
     let first = snapped.map_or(first, |(decimals, _)| decimals);
-    // Returns whether all fields except those that the drag changes keep their exact values. This
-    // is checked only for a drag on a grid, because its tolerance is a whole step of the grid. A
-    // smaller change of another field, which may use the same number of the text, would be within
-    // that tolerance.
+    // Returns whether all fields that the drag should not change keep their exact values. This is
+    // checked only for a drag on a grid. The tolerance of such a drag is a whole step of the grid.
+    // A small change of another field, which may use the same number of the text, would be within
+    // this tolerance.
     let keeps_others = |found: FieldOwner| {
         let mut fields = block.fields.iter().map(|field| field.name.text);
         let is_meant = |field: &str| changes.iter().any(|change| change.name == field);

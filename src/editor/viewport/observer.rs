@@ -24,8 +24,8 @@ pub const USUAL_FOV: f64 = 30.0;
 const FILLED: f64 = 0.75;
 
 /// Maximum distance from the eye to another point that the observer must see, as a multiple of the
-/// distance from the eye to a corner of the window. Points farther away are left out, since the
-/// window would otherwise be too small to be recognised.
+/// distance from the eye to a corner of the window. Points farther away are left out; with them,
+/// the window would be too small to be recognised.
 const FARTHEST: f64 = 60.0;
 
 /// Maximum absolute value of the coordinates that determine the view, in metres. Larger coordinates
