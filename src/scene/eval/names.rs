@@ -186,7 +186,7 @@ impl<'s> Names<'s> {
     }
 
     /// Returns the names that are defined so far, for comparison with an undefined name. Deducts
-    /// one comparison for each of them from [`Self::budget`], which limits the total time. Returns
+    /// one comparison for each of them from `budget`, which limits the total time. Returns
     /// `None` if too few comparisons remain.
     pub(super) fn to_compare(&self) -> Option<&[&'s str]> {
         // Approximate number of predefined colours and constants. An undefined name is compared
