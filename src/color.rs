@@ -116,8 +116,9 @@ fn is_below_half_exactly(light: f64, k: u8) -> bool {
     let shift = 1075 - exponent;
     // Twice the 8-bit value `k` + 1/2: the sRGB value on a scale from 0 (black) to 510 (white).
     let halves = 2 * u32::from(k) + 1;
-    // The straight piece of the curve ends at 0.04045 (of 1), i.e. at 20.6 of 510. A whole number
-    // `halves` therefore lies on the straight piece if it is at most 20.
+    // The straight piece of the curve ends at 0.04045 on a scale from 0 to 1, i.e. at 20.6 on the
+    // scale of `halves`. The whole number `halves` therefore lies on the straight piece if it is at
+    // most 20.
     if halves <= 20 {
         // On the straight piece, the test is L < c/12.92. Here L is the light, and c = halves/510
         // is the sRGB value. Multiplied by 65892 = 5100·12.92, it becomes 65892·L < 10·halves.

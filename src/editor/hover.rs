@@ -236,8 +236,8 @@ fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: RoleToken) -> 
             about(call.function.span, markdown)
         }
         ValueKind::Number(_) => {
-            // A number is described by the description of its field. If it is only a part of the
-            // field's value, such as a component of a vector, it has no description.
+            // The description of a number is that of its field. A number that is only a part of the
+            // field's value, such as a component of a vector, has no description.
             let (row, field) = (path.row()?, path.field_row()?);
             if depth > 0 {
                 return None;

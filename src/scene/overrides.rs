@@ -238,7 +238,7 @@ fn setting(name: &str) -> Option<&'static schema::BlockRow> {
 }
 
 /// Returns the row of a block's kind in the language's table. A mistyped kind stands for the
-/// nearest one. Returns `None` if the kind is missing, or similar to no other.
+/// nearest one. Returns `None` if the kind is missing, or if no kind is similar to it.
 fn row(block: &Block<'_>) -> Option<&'static schema::BlockRow> {
     schema::block_or_nearest(block.kind?.text)
 }

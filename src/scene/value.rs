@@ -85,8 +85,8 @@ pub fn call(function: &str, arguments: &[Value]) -> Option<Value> {
     })
 }
 
-/// Combines all numbers to one by applying `choose`, such as the minimum, to the result so far and
-/// the next number. Returns `None` if there is no number or if a value is not a number.
+/// Returns the minimum or the maximum of all numbers; `choose` returns that of two numbers. Returns
+/// `None` if there is no number or if a value is not a number.
 fn fold(numbers: &[Value], choose: impl Fn(f64, f64) -> f64) -> Option<f64> {
     let mut chosen = None;
     for number in numbers {

@@ -433,10 +433,10 @@ impl DragView<'_> {
         Some(((-9..=12).find(is_small)?, step))
     }
 
-    /// Returns whether the states `ideal` and `found` of the dragged object or camera are both
-    /// possible and look alike, i.e. whether all points that [`Self::marks`] returns for them are
-    /// at the same places within `tolerance` pixels. Points far outside of the picture are ignored,
-    /// except those that the pointer drags.
+    /// Returns whether the states `ideal` and `found` of the dragged object or camera look alike,
+    /// i.e. whether all points that [`Self::marks`] returns for them are at the same places within
+    /// `tolerance` pixels. Points far outside of the picture are ignored unless the pointer drags
+    /// them. Returns `false` if `found`, unlike `ideal`, breaks a condition of the language.
     fn agree(&self, ideal: FieldOwner, found: FieldOwner, tolerance: f64) -> bool {
         // A length that was rounded to few digits may have become 0, which the language forbids.
         // Such a result is rejected even if it looks alike.

@@ -95,8 +95,8 @@ pub struct DecimalRounding {
     /// tens, hundreds and so on.
     decimals: i32,
     /// Absolute values of the changes that [`together`] has rounded already. A number that changes
-    /// by one of these amounts is not rounded to `decimals` again. Otherwise points of the object
-    /// that are not dragged would move slightly.
+    /// by one of these amounts is not rounded to `decimals` again, because points of the object
+    /// that are not dragged would then move slightly.
     exact: Vec<f64>,
 }
 

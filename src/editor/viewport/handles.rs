@@ -24,8 +24,8 @@ use crate::{
 /// smaller tolerance would need numbers with more digits in the text.
 pub const TOLERANCE: f64 = 0.5;
 
-/// Message about a drag that is refused. The new numbers would be too large for a scene, or too
-/// large for `f64` to place the handle accurately.
+/// Message about a drag that is refused because the new numbers would be too large for a scene, or
+/// too large for `f64` to place the handle accurately.
 pub const TOO_FAR: &str = "that is too far away";
 
 /// Name of a handle, and its position in space. The position is `None` if the eye cannot see the

@@ -39,8 +39,8 @@ pub struct Names<'s> {
     /// Names of the indices of all blocks. An index is the counter of a `for`, such as `i` in
     /// `for i < 8`.
     pub(super) indices: HashSet<&'s str>,
-    /// Number of comparisons that may still be made between undefined names and known ones, in
-    /// search of the most similar known name.
+    /// Budget of comparisons between undefined names and known ones. The comparisons find the most
+    /// similar known name.
     budget: ComparisonBudget,
     /// Problems of undefined names. Other problems are kept elsewhere, because some of them are
     /// discarded when a value is evaluated again.
@@ -134,10 +134,10 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Removes and returns the `let` with the same name as `index` if it stands further down in the
-    /// file, so that the index can be defined. Otherwise returns `None`. Such a `let` may already
-    /// be defined if there are `--set` arguments, since all definitions are then evaluated before
-    /// the blocks.
+    /// If a `let` with the name of `index` stands further down in the file and is defined already,
+    /// removes and returns it, so that the index can be defined. Otherwise returns `None`.
+    /// Definitions further down are defined already if there are `--set` arguments, since all
+    /// definitions are then evaluated before the blocks.
     pub fn hide_below(&mut self, index: Name<'s>) -> Option<(&'s str, Defined)> {
         let place = self.place(index.text)?;
         let is_below = place.source == index.span.source && place.start > index.span.start;
@@ -186,8 +186,8 @@ impl<'s> Names<'s> {
     }
 
     /// Returns the names that are defined so far, for comparison with an undefined name. Deducts
-    /// one comparison for each of them from `budget`, which limits the total time. Returns
-    /// `None` if too few comparisons remain.
+    /// one comparison for each of them, and for each predefined name, from `budget`, which limits
+    /// the total time. Returns `None` if too few comparisons remain.
     pub(super) fn to_compare(&self) -> Option<&[&'s str]> {
         // Approximate number of predefined colours and constants. An undefined name is compared
         // with them too. An estimate is enough, because it only limits the number of searches.
@@ -203,8 +203,8 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Returns the number of comparisons that may still be made between undefined names and known
-    /// ones, in search of the most similar known name.
+    /// Returns the budget of comparisons between undefined names and known ones. The comparisons
+    /// find the most similar known name.
     pub fn budget(&self) -> &ComparisonBudget {
         &self.budget
     }
