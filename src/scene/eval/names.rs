@@ -134,10 +134,10 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// If a `let` with the name of `index` stands further down in the file and is defined already,
-    /// removes and returns it, so that the index can be defined. Otherwise returns `None`.
-    /// Definitions further down are defined already if there are `--set` arguments, since all
-    /// definitions are then evaluated before the blocks.
+    /// Removes the `let` that has the name of `index`, stands further down in the file and is
+    /// defined already, so that the index can be defined. Returns the removed `let`, or `None` if
+    /// there is none. Definitions further down are defined already if there are `--set` arguments,
+    /// since all definitions are then evaluated before the blocks.
     pub fn hide_below(&mut self, index: Name<'s>) -> Option<(&'s str, Defined)> {
         let place = self.place(index.text)?;
         let is_below = place.source == index.span.source && place.start > index.span.start;
