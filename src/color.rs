@@ -1,4 +1,4 @@
-//! Colours: sRGB, as in the scene language, and linear light, in which samples are averaged.
+//! Colours in sRGB, as in the scene language, and in linear light, in which samples are averaged.
 
 use std::fmt;
 
@@ -34,10 +34,10 @@ impl Color {
     pub fn to_linear(self) -> [f64; 3] {
         self.srgb.map(|channel| {
             if channel.fract() == 0.5 {
-                // This channel lies halfway between two bytes, `channel as u8` and the next one.
-                // `to_bytes` rounds it up. `srgb_to_linear` might return a light that is slightly
-                // too dark and is rounded down, so `half_byte` is used instead: it returns the
-                // least light that is rounded up.
+                // This channel lies halfway between two bytes. `to_bytes` rounds it up, so its
+                // light must be rounded up, too. The result of `srgb_to_linear` might be slightly
+                // too dark and be rounded down. `half_byte` returns the least light that is rounded
+                // up.
                 half_byte(channel as u8)
             } else {
                 srgb_to_linear(channel / 255.0)
@@ -66,7 +66,7 @@ pub fn srgb_to_linear(encoded: f64) -> f64 {
 /// Returns the least linear light that is rounded to the byte `k` + 1 of sRGB, for `k` < 255. This
 /// is the light whose sRGB value is `k` + 1/2 in 8-bit steps, rounded up to an `f64`.
 ///
-/// Whether an `f64` is below that light can be decided with integers. The curve of sRGB raises a
+/// Integers suffice to decide whether an `f64` is below this light. The curve of sRGB raises a
 /// rational number x to the power 2.4. A positive light L is less than x^2.4 exactly if L^5 is less
 /// than x^12.
 pub fn half_byte(k: u8) -> f64 {
@@ -84,8 +84,8 @@ pub fn half_byte(k: u8) -> f64 {
 /// 1/2, in 8-bit steps. `light` must be positive and not subnormal.
 fn is_below_half(light: f64, k: u8) -> bool {
     // Bound on the relative rounding error of `difference` below. The difference is computed in
-    // double-doubles (sums of two `f64`), which decide most cases. If all cases were decided with
-    // integers, this would need half the time of rendering a small picture.
+    // double-doubles (sums of two `f64`), which decide most cases. Integers could decide all cases,
+    // but this would take half the time of rendering a small picture.
     //
     // In multiples of the unit roundoff of a double-double, the relative errors are at most 4 for
     // light^5, 11 for scale^12, 1 for the product of these two powers, 11 for x^12, and 1 for the
@@ -116,8 +116,9 @@ fn is_below_half_exactly(light: f64, k: u8) -> bool {
     let shift = 1075 - exponent;
     // Twice the 8-bit value `k` + 1/2: the sRGB value on a scale from 0 (black) to 510 (white).
     let halves = 2 * u32::from(k) + 1;
-    // The straight piece of the curve ends at 0.04045 (of 1), i.e. at 20.6 of 510. A whole number
-    // `halves` therefore lies on the straight piece if it is at most 20.
+    // The straight piece of the curve ends at 0.04045 on a scale from 0 to 1, i.e. at 20.6 on the
+    // scale of `halves`. The whole number `halves` therefore lies on the straight piece if it is at
+    // most 20.
     if halves <= 20 {
         // On the straight piece, the test is L < c/12.92. Here L is the light, and c = halves/510
         // is the sRGB value. Multiplied by 65892 = 5100·12.92, it becomes 65892·L < 10·halves.

@@ -57,8 +57,8 @@ pub fn at_most(bound: f64) -> String {
 }
 
 /// Formats a number so that a reader can compare it with the numbers `others`. Uses the form of
-/// [`short`] if it preserves the order (less, equal or greater) to each of the others. Otherwise,
-/// uses all digits.
+/// [`short`] unless its rounding changes whether the number is less than, equal to or greater than
+/// one of `others`. In this case, uses all digits.
 pub fn beside(x: f64, others: &[f64]) -> String {
     let text = short(x);
     let read = text.parse().unwrap_or(x);
@@ -71,8 +71,8 @@ pub fn beside(x: f64, others: &[f64]) -> String {
 }
 
 /// Rounds a number to the decimals that are meaningful for a given error: up to the first
-/// significant digit of the error, but at most 12 decimals. Returns `x` unchanged unless the error
-/// is positive and finite.
+/// significant digit of the error, but at most 12 decimals. Returns `x` unchanged if the error is
+/// not positive or not finite.
 pub fn rounded(x: f64, error: f64) -> f64 {
     if !(error > 0.0 && error.is_finite()) {
         return x;

@@ -1,5 +1,5 @@
-//! What is seen of each object of a scene: its rectangle in the picture and the area that shows it,
-//! or the reason why it is not seen.
+//! Finds how much of each object of a scene is visible: the bounding rectangle and the area of its
+//! visible part in the picture. For an object of which nothing is visible, finds the reason.
 //!
 //! The areas are computed by exact integration. If this would take too much work, only the object
 //! at the centre of each pixel is determined, the whole pixel is added to this object's area, and
@@ -17,26 +17,27 @@ use crate::{
 };
 use glam::DVec2;
 
-/// Maximum work on a whole picture, in units of about 50 ns, i.e. about 5 s in all. It is shared
-/// equally among the tiles into which the picture is divided. When a tile's share is used up, each
-/// remaining pixel is attributed to the object at its centre. With a larger maximum, the areas
-/// would be exact for more scenes, but the answer could take longer.
+/// Maximum work for a whole picture, in units of about 50 ns, i.e. about 5 s in all. Each tile of
+/// the picture may use an equal part of this work. When a tile has used up its part, each of its
+/// remaining pixels is attributed to the object at the pixel's centre. With a larger maximum, the
+/// areas would be exact for more scenes, but the answer could take longer.
 const MAX_WORK: u64 = 100_000_000;
 
 /// Minimum visible area, in pixels, for which an object is reported as seen. Areas are printed to
 /// this precision, so a smaller area could be printed as 0.
 pub const MIN_AREA: f64 = 1e-6;
 
-/// What is seen of an object.
+/// How much of an object is seen in the picture, or why nothing of it is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Visibility {
-    /// The object is seen: the bounding rectangle of the pixels that show it, and the area that
-    /// shows it, in pixels.
+    /// The object is seen. The variant holds the bounding rectangle of the pixels that show the
+    /// object, and the object's visible area in pixels.
     Part(Area, f64),
     /// The object lies wholly outside of the picture.
     Outside(Outside),
-    /// At the object's centre, another object is seen, given by its index in the file.
+    /// Another object is seen at the projection of this object's centre. The variant holds the
+    /// index of the other object in the file.
     HiddenBy(usize),
     /// Nothing of the object is seen for another reason. For instance, several objects together
     /// hide it, or it is too thin, or it is outside of the picture although its bounding sphere is
@@ -44,8 +45,8 @@ pub enum Visibility {
     Nothing,
 }
 
-/// Finds what is seen of each object. Returns the results in file order, and whether all areas are
-/// exact.
+/// Determines the visibility of each object. Returns the results in the order of the objects in the
+/// file, and whether all areas are exact.
 ///
 /// # Panics
 ///
@@ -97,12 +98,12 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
 }
 
 /// Maximum number of objects that the readable output of `inspect` lists. For each listed object
-/// that is hidden, the output also names the object in front. A list of many more objects would
-/// hardly be read by a person; the JSON output contains all objects.
+/// that is hidden, the output also names the object in front. Hardly anybody would read a much
+/// longer list; the JSON output contains all objects.
 pub const LISTED: usize = 100;
 
-/// Map from an object's index to the bounding rectangle of its pixels and to the area that shows
-/// it, in pixels.
+/// Map from an object's index to the bounding rectangle of the pixels that show the object, and to
+/// its visible area in pixels.
 type SeenAreas = BTreeMap<usize, (Area, f64)>;
 
 fn add(areas: &mut SeenAreas, object: usize, (pixels, area): (Area, f64)) {

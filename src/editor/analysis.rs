@@ -22,8 +22,8 @@ pub struct Analysis<'s> {
     tokens: OnceCell<Vec<RoleToken>>,
 }
 
-/// Nodes of the syntax tree, all of which contain the same offset: a definition or a block, a field
-/// of the block, and values. Each node lies within the one before it.
+/// Nodes of the syntax tree that contain a given offset of the text: a definition or a block, a
+/// field of the block, and values. Each node lies within the one before it.
 #[derive(Debug, Default)]
 pub(super) struct Path<'a, 's> {
     /// The definition that contains the offset.
@@ -32,8 +32,8 @@ pub(super) struct Path<'a, 's> {
     pub block: Option<&'a Block<'s>>,
     /// The field of the block that contains the offset.
     pub field: Option<&'a Field<'s>>,
-    /// The values that contain the offset. Each value is a part of the one before it, as `1` is of
-    /// `1 + x`.
+    /// The values that contain the offset, from the largest to the smallest: `1 + x` comes before
+    /// its part `1`.
     pub values: Vec<&'a tree::Value<'s>>,
 }
 

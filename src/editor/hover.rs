@@ -188,9 +188,9 @@ pub(super) fn about_index(analysis: &Analysis<'_>, index: &Index<'_>) -> String 
 }
 
 /// Returns the index in `path.values` of the value that the hover describes. Usually this is the
-/// last value, i.e. the innermost one. If that is a number, a list or a negation within an
-/// operation or a call, the hover describes the innermost such operation or call instead. Returns
-/// `None` if `path` contains no value.
+/// last value, i.e. the innermost one. If the last value is a number, a list or a negation within
+/// an operation or a call, the hover describes the innermost such operation or call instead.
+/// Returns `None` if `path` contains no value.
 fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
     use ValueKind::{Call, Chain, Negation, Number, Parentheses, Tuple};
     let (value, around) = path.values.split_last()?;
@@ -204,7 +204,7 @@ fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
 }
 
 /// Describes the value at the end of `path`, and its result. Returns `None` if the value has no
-/// description, as a number within a vector.
+/// description, such as a number within a vector.
 fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: RoleToken) -> Option<Hover> {
     let depth = depth_of_meaning(path)?;
     let value = *path.values.get(depth)?;
@@ -236,8 +236,8 @@ fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: RoleToken) -> 
             about(call.function.span, markdown)
         }
         ValueKind::Number(_) => {
-            // A number is described by the description of its field. If it is only a part of the
-            // field's value, such as a component of a vector, it has no description.
+            // The description of a number is that of its field. A number that is only a part of the
+            // field's value, such as a component of a vector, has no description.
             let (row, field) = (path.row()?, path.field_row()?);
             if depth > 0 {
                 return None;

@@ -1,11 +1,10 @@
 //! Answers the requests of editors while an author writes a scene.
 //!
 //! In: a text, and an offset in it. Out: completions, the meaning of a word, the uses of a name and
-//! so on, as plain data with byte spans. Each kind of answer has a file. The files depend neither
-//! on an editor nor on a protocol: the language server converts the answers, and a page in a
-//! browser could do so, too. All files use the schema, which lists the language's blocks and
-//! fields, and the tree and the scene of `analysis`. Tree and scene are as complete as the errors
-//! of the text allow.
+//! so on, as plain data with byte spans. Each kind of answer has a file. The files know no editor
+//! and no protocol: the language server converts the answers, and a page in a browser could do so,
+//! too. All files use the language's tables in `schema`, and the tree and the scene from
+//! `analysis`. If the text has errors, the tree and the scene contain the parts without errors.
 
 mod actions;
 mod analysis;

@@ -1,7 +1,7 @@
 //! Finds the definitions and uses of names, and renames them.
 //!
 //! `let`s and objects have separate namespaces, so a `let` and an object may have equal names. The
-//! index of a repeated block, as `i` in `for i < 3`, can be used only in this block.
+//! index of a repeated block, such as `i` in `for i < 3`, can be used only in this block.
 
 use super::{
     analysis::Analysis,

@@ -1,4 +1,4 @@
-//! The numbers of a scene that the conditions of a lesson look at.
+//! Computes the numbers of a scene that the conditions of a lesson check.
 
 use std::cell::OnceCell;
 
@@ -28,9 +28,9 @@ const SIZE: [u32; 2] = [160, 90];
 /// page would wait too long for its answer.
 const MOST_SAMPLES: u64 = 1 << 23;
 
-/// Maximum work on the exact picture with which the error of a scene is computed, in the units of
-/// the exact renderer (about 50 ns): about a second on one processor. A page would wait too long
-/// for more.
+/// Maximum work on the exact picture with which the error of a scene is computed, in units of about
+/// 50 ns, i.e. about a second on one processor. With more, a page would wait too long for its
+/// answer.
 const MOST_WORK: u64 = 20_000_000;
 
 /// Numbers of one scene, computed when a condition needs them.
@@ -109,8 +109,8 @@ pub fn at<'v>(value: &'v Value, pointer: &str) -> Option<&'v Value> {
     tokens(pointer).try_fold(value, |value, token| child(value, &token))
 }
 
-/// Finds the first token of a pointer for which there is no value. Returns it with a similar name
-/// that there is, or `None` if there is a value, or no similar name.
+/// Finds the first token of a pointer that leads to no value. Returns this token and a similar name
+/// that exists. Returns `None` if every token leads to a value, or if no existing name is similar.
 pub fn misspelt(mut value: &Value, pointer: &str) -> Option<(String, String)> {
     for token in tokens(pointer) {
         let Some(child) = child(value, &token) else {

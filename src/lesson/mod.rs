@@ -1,4 +1,5 @@
-//! Judges whether a scene solves a lesson, by numbers and not by pictures.
+//! Checks whether a scene solves a lesson. The conditions of a lesson are about numbers of the
+//! scene, not about its picture.
 //!
 //! In: a lesson, which is Markdown with conditions in fenced blocks `check`; its start scene; and a
 //! student's scene. Out: for each condition whether it holds, and the value that was found.
@@ -36,9 +37,9 @@ pub struct Condition {
     /// The line of the condition, counted from 1.
     pub line: usize,
     base: Base,
-    /// JSON pointer to the value, below the base.
+    /// JSON pointer to the value within the output that `base` names; empty for [`Base::Error`].
     pointer: String,
-    /// Place of the pointer in the text of the lesson.
+    /// Span of the pointer in the text of the lesson.
     place: Span,
     operator: &'static str,
     expected: Expected,
@@ -47,13 +48,13 @@ pub struct Condition {
 /// Source of the value that a condition checks.
 #[derive(Clone, Copy, Debug)]
 enum Base {
-    /// What `pinhole inspect` says about the student's scene.
+    /// The output of `pinhole inspect` for the student's scene.
     Inspect,
-    /// What `pinhole inspect` says about the lesson's own scene.
+    /// The output of `pinhole inspect` for the lesson's start scene.
     Start,
-    /// What `pinhole probe` says about a point of the student's picture.
+    /// The output of `pinhole probe` for this point of the student's picture, in pixels.
     Probe(DVec2),
-    /// The error of the student's samples.
+    /// The sampling error of the student's picture, which `Facts::error` computes.
     Error,
 }
 
@@ -62,12 +63,12 @@ enum Base {
 enum Expected {
     Value(Value),
     Range(f64, f64),
-    /// The value v at the same path of the lesson's own scene. A number `share` stands for the
-    /// range from v − share·|v| to v + share·|v|; `None` stands for v itself.
+    /// The value v at the same path for the lesson's start scene. If the variant contains a number
+    /// s, every value from v − s·|v| to v + s·|v| is accepted; otherwise, only v itself.
     Start(Option<f64>),
 }
 
-/// What was found for a condition.
+/// Result of checking a condition.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Judged<'l> {
@@ -77,13 +78,13 @@ pub struct Judged<'l> {
     pub found: Option<Value>,
     /// The value at the same path of the start scene, if the condition compares with it.
     pub at_start: Option<Value>,
-    /// Whether the condition holds. If there is no value, it does not.
+    /// Whether the condition holds; `false` if there is no value at the condition's path.
     pub holds: bool,
 }
 
 impl Lesson {
-    /// Returns a warning for each path of which a part is probably misspelt: the scene of the
-    /// lesson has no such value or object, but a similar one.
+    /// Returns a warning for each path with a part that is probably misspelt: the lesson's start
+    /// scene has no value or object of this name, but one with a similar name.
     pub fn warnings(&self, start: &Facts<'_>) -> Vec<Diagnostic> {
         let conditions = self.checks.iter().flatten();
         let warning = |it: &Condition| {
@@ -138,7 +139,7 @@ impl Condition {
     }
 
     /// Returns whether the condition holds for the value `found`; `at_start` is the value at the
-    /// same path of the lesson's own scene. Returns `None` if a value is missing, or if a
+    /// same path for the lesson's start scene. Returns `None` if a value is missing, or if a
     /// comparison requires numbers and a value is not a number.
     fn holds(&self, found: Option<&Value>, at_start: Option<&Value>) -> Option<bool> {
         let expected = match &self.expected {

@@ -31,7 +31,7 @@ pub fn parse(source: &Source) -> Result<Lesson, Vec<Diagnostic>> {
     let text = source.text();
     let mut checks: Vec<Vec<Condition>> = Vec::new();
     let mut problems = Vec::new();
-    // The characters that have opened the current block, and whether the block is a check.
+    // The characters that opened the current fenced block, and whether it is a `check` block.
     let mut fence: Option<(&str, bool)> = None;
     for (line, number) in text.lines().zip(1..) {
         let words = line.trim();
@@ -76,12 +76,12 @@ fn opened_by(line: &str) -> Option<(&str, bool)> {
     let sign = ['`', '~'].into_iter().find(|it| line.starts_with(*it))?;
     let info = line.trim_start_matches(sign);
     let mark = &line[..line.len() - info.len()];
-    // Backticks after the first ones are those of code within a line.
+    // A line with more backticks after the first ones is not a fence, but code within a line.
     let is_fence = mark.len() >= 3 && !(sign == '`' && info.contains(sign));
     is_fence.then(|| (mark, info.trim() == "check"))
 }
 
-/// The part of the text that is wrong, what is wrong with it, and what would be right.
+/// A mistake: the wrong part of the lesson's text, the message and the help.
 type Problem<'t> = (&'t str, String, String);
 
 pub fn diagnostic(severity: Severity, span: Span, message: String, help: String) -> Diagnostic {
@@ -100,13 +100,13 @@ pub fn diagnostic(severity: Severity, span: Span, message: String, help: String)
     }
 }
 
-/// Returns the place of a part of a text.
+/// Returns the span of `part`, a slice of `text`.
 fn span(text: &str, part: &str) -> Span {
     let start = part.as_ptr() as usize - text.as_ptr() as usize;
     Span::new(SourceId::File, start, start + part.len())
 }
 
-/// Parses a line of the lesson `all`.
+/// Parses the condition in `line`, a slice of the lesson's text `all`.
 fn condition<'t>(all: &str, line: &'t str, number: usize) -> Result<Condition, Problem<'t>> {
     let (text, words) = without_comment(line);
     let Some((base, pointer, rest)) = path(text) else {

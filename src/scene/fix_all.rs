@@ -58,7 +58,8 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
     let mut sources = sources.clone();
     let mut problems = read(&sources).diagnostics;
     let mut done = Vec::new();
-    // Problems that remained although their fixes were applied. These fixes are not applied again.
+    // Problems that remained although their fixes were applied. These fixes are not applied again
+    // until other fixes have changed the text.
     let mut staying: HashSet<Problem> = HashSet::new();
     let mut seen = HashSet::new();
     // A fixed text would lose bytes that are not UTF-8, so such a text is not fixed.
@@ -201,7 +202,7 @@ impl Round {
         }
     }
 
-    /// Returns the problem with the offset that it has after the edits of this round.
+    /// Returns a copy of the problem whose `start` is the offset after the edits of this round.
     fn moved(&self, problem: &Problem) -> Problem {
         let grown: isize = self
             .growth

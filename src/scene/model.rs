@@ -139,8 +139,8 @@ pub enum Count {
     Total(u64),
 }
 
-/// One object of the scene. Two objects are equal if their names, indices and shapes are. Their
-/// spans may differ, so that scenes of different texts can be equal.
+/// One object of the scene. Two objects are equal if their names, indices and shapes are equal.
+/// Their spans may differ, so that scenes of different texts can be equal.
 #[derive(Clone, Debug)]
 pub struct Object {
     /// The unique name, if the object has one: `Ball`, or `Ball[3, 1]` if the block is repeated.

@@ -238,7 +238,7 @@ fn setting(name: &str) -> Option<&'static schema::BlockRow> {
 }
 
 /// Returns the row of a block's kind in the language's table. A mistyped kind stands for the
-/// nearest one. Returns `None` if the kind is missing, or similar to no other.
+/// nearest one. Returns `None` if the kind is missing, or if no kind is similar to it.
 fn row(block: &Block<'_>) -> Option<&'static schema::BlockRow> {
     schema::block_or_nearest(block.kind?.text)
 }
@@ -280,7 +280,7 @@ fn objects<'s>(items: &[Item<'s>]) -> Vec<&'s str> {
 const OTHERS: &str = "name a `let` of the scene, or a field by `BLOCK.FIELD=…`";
 
 /// Maximum number of names that a help text lists. If there are more, the help lists none of them,
-/// since a longer list would no longer be read.
+/// since nobody would read a longer list.
 const FEW: usize = 8;
 
 /// Returns the error for a `--set` target whose block is not in the file and cannot be added.

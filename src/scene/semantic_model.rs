@@ -95,7 +95,7 @@ impl<'s> SemanticModel<'s> {
         is_first.then(|| self.names.value(name.text)).flatten()
     }
 
-    /// Evaluates an expression of the tree; `wanted` is the type that the place requires, if that
+    /// Evaluates an expression of the tree; `wanted` is the type that the context requires, if it
     /// is known. Returns `None` if the expression has errors, or has no value by itself, such as
     /// the name of a sampling method.
     pub fn value(&self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {

@@ -96,15 +96,14 @@ impl Outside {
     }
 }
 
-/// Returns whether samples cannot tell the squares of a visible board apart, so that all squares
-/// get the same colour.
+/// Returns whether samples cannot tell the squares of a visible board apart. All squares of the
+/// board then get the same colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
     // If the camera looks straight down or up, its up vector may be parallel to the view direction.
-    // It is then unknown how the window is turned about the view direction, and its sides are
+    // The rotation of the window about the view direction is then unknown. The window's sides are
     // assumed to be parallel to x and z. The smaller of the window's extents along x and z is then
-    // its shorter side. If the window were turned otherwise, both extents would be at least as
-    // great. If the squares cannot be told apart under the assumption, they therefore cannot be
-    // told apart in any case.
+    // its shorter side. With any other rotation, both extents are at least as great. Squares that
+    // are lost under this assumption, as `Sight::are_lost` finds, are therefore lost in any case.
     let straight = || {
         let (from, to) = camera.view.ends(camera.eye);
         let along_y = (to - from).normalize().y.abs() > 1.0 - MARGIN;
@@ -247,15 +246,15 @@ impl Sight {
     }
 
     /// Returns whether the squares of a board are too small to be told apart. This is so if nearly
-    /// all rays hit the board so far from the eye that the coordinates of the hits, counted in
-    /// squares, are rounded to even integers. All hits then lie on even squares.
+    /// all rays hit the board very far from the eye. The coordinates of a hit, in units of the side
+    /// of a square, are then rounded to even integers, so all hits lie on even squares.
     fn are_lost(&self, board: &Checkerboard) -> bool {
         // Let h be the vertical distance of the board from the eye. A ray with the direction r hits
         // the board at the horizontal distance |r_x|·h/|r_y| along x, and likewise along z. In the
         // window, |r_y| is at most `extent.y`, and |r_x| is at least 2^−10·`extent.x` in more than
-        // 99 % of the picture. A coordinate above 2^[`Big::BITS`], counted in squares, is rounded
-        // to an even number. The condition requires twice this value, for safety. If a number
-        // overflows or underflows, the comparison is false.
+        // 99 % of the picture. A distance of more than 2^[`Big::BITS`] squares is rounded to an
+        // even number of squares. For safety, the condition requires twice this distance. If a
+        // number overflows or underflows, the comparison is false.
         let [across, up] = self.window;
         let extent = self.forward.abs() + across.abs() + up.abs();
         let height = (board.y - self.eye.y).abs();

@@ -1,8 +1,8 @@
 //! Computes operators and functions on values.
 //!
-//! The functions here know no places in the text. They return a result, or `None` if the types do
-//! not fit, and the caller reports the problem at its place. Infinite and NaN results are returned
-//! as they are; the caller reports them, too.
+//! The functions here do not know where their operands stand in the text. They return a result, or
+//! `None` if the types do not fit. The caller reports the problem with its span. Infinite and NaN
+//! results are returned as they are; the caller reports them, too.
 
 use glam::DVec3;
 
@@ -85,8 +85,8 @@ pub fn call(function: &str, arguments: &[Value]) -> Option<Value> {
     })
 }
 
-/// Combines all numbers to one by applying `choose`, such as the minimum, to the result so far and
-/// the next number. Returns `None` if there is no number or if a value is not a number.
+/// Returns the minimum or the maximum of all numbers; `choose` returns that of two numbers. Returns
+/// `None` if there is no number or if a value is not a number.
 fn fold(numbers: &[Value], choose: impl Fn(f64, f64) -> f64) -> Option<f64> {
     let mut chosen = None;
     for number in numbers {

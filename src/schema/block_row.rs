@@ -14,8 +14,8 @@ impl BlockRow {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// Returns the fields for which people use the word `written` by mistake. The word may stand
-    /// for several fields, so it does not tell which of them is meant.
+    /// Returns the fields that `written` may stand for according to their [`FieldRow::perhaps`].
+    /// Users write such a word by mistake for different fields, so the meaning is uncertain.
     pub fn fields_perhaps(&self, written: &str) -> impl Iterator<Item = &'static FieldRow> {
         let fields = self.fields.iter();
         fields.filter(move |field| is_among(written, field.perhaps))
@@ -55,8 +55,8 @@ impl BlockRow {
         self.choices.iter().find(holds)
     }
 
-    /// Returns the fields that exclude a field, such as `direction` for `lookat`: the fields of the
-    /// other ways of its [`Choice`].
+    /// Returns the fields that a block cannot have together with `field`, such as `direction` for
+    /// `lookat`. They belong to the other ways of the field's [`Choice`].
     pub fn excludes(&self, field: &str) -> impl Iterator<Item = &'static str> {
         let ways = self.choice(field).into_iter().flat_map(|it| it.ways);
         let others = ways.filter(move |way| !way.contains(&field));

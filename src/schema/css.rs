@@ -1,6 +1,6 @@
 //! The named colours of CSS (CSS Color Module Level 4, section 6.1).
 //!
-//! The table is copied, because a library that contains it would add nine crates to the build.
+//! The table is a copy, because a library that contains it would add nine crates to the build.
 
 use std::sync::LazyLock;
 

@@ -79,8 +79,8 @@ pub fn parse(range: &str, unit: Option<Unit>) -> Result<CommentRange, String> {
 }
 
 /// Parses a number of a range, and converts it to `unit`, the unit of the slider's value. A number
-/// without a unit is not converted. Returns the number, and whether it was converted. If it is not
-/// a number, or has a unit although the value has none, returns a message that says so.
+/// without a unit is not converted. Returns the number, and whether it was converted. Returns a
+/// message if `written` is not a number, or if it has a unit although the value has none.
 fn in_unit(written: &str, unit: Option<Unit>) -> Result<(f64, bool), String> {
     let mut units = [Unit::Degrees, Unit::Radians].into_iter();
     let own = units.find(|unit| written.ends_with(unit.name()));

@@ -59,7 +59,7 @@ pub struct Slider<'a> {
     /// Span of the number without its unit. If the value is not a number, the span of the whole
     /// value.
     pub span: Span,
-    /// Limits of the slider; `None` if the value is not a number, so that there is no slider.
+    /// Limits of the slider; `None` if there is no slider, because the value is not a number.
     pub limits: Option<Limits>,
     /// Message for the author, if the comment after the definition looks like a range but is not
     /// one, or if the slider's range differs from the range in the comment.
@@ -145,9 +145,9 @@ fn within(
 }
 
 /// Returns the limits of a number whose comment gives no range. The slider extends to both sides by
-/// the number's absolute value or by [`STEPS`] steps ([`STEPS_OF_COUNT`] for whole numbers),
-/// whichever is more, but not beyond `bounds`. If an end would cause a new error in the text, it is
-/// moved towards the current number.
+/// the greater of the number's absolute value and [`STEPS`] steps ([`STEPS_OF_COUNT`] for whole
+/// numbers). It does not extend beyond `bounds`. If an end would cause a new error in the text, it
+/// is moved towards the current number.
 fn tried(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> Limits {
     let is_count = trials.is_count(literal);
     if is_count {
@@ -170,9 +170,9 @@ fn tried(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> 
     let reach = middle.abs().max(steps * step);
     let ends = [middle - reach, middle + reach].map(|end| bounded(rounded(end, step)));
     let valid = ends.map(|end| trials.last_right(literal, end, step, is_count));
-    // If even the first step in either direction causes an error, the slider keeps the ends that it
-    // had before the search. Otherwise, both ends would be the current number, and the slider could
-    // not move.
+    // If the first step causes an error in both directions, the search finds no ends other than the
+    // current number, and the slider could not move. It then keeps the ends that it had before the
+    // search.
     let valid = if valid == [None, None] {
         ends
     } else {
@@ -213,7 +213,7 @@ struct Bounds {
     is_whole: bool,
 }
 
-/// Bounds of a number that is subject to no known condition.
+/// Bounds of a number on which no condition is known.
 const UNBOUNDED: Bounds = Bounds {
     least: f64::NEG_INFINITY,
     most: f64::INFINITY,

@@ -47,8 +47,8 @@ pub struct Drag<'a> {
     /// Axis or plane along which the handle moves; `None` if it follows the pointer freely.
     pub along: Option<Along>,
     /// Maximum distance, in pixels of the picture, between neighbouring points of the grid to which
-    /// the handle snaps. `None` if the drag does not snap to a grid. The changed numbers become
-    /// multiples of a power of ten, the largest for which the points are near enough.
+    /// the handle snaps. The changed numbers become multiples of a power of ten: the largest with
+    /// which the points are no farther apart. `None` if the drag does not snap to a grid.
     pub step: Option<f64>,
     /// Second camera that looks at the scene from outside, if the pointer is in its picture; `None`
     /// if the pointer is in the picture of the scene's own camera.
@@ -70,8 +70,8 @@ pub struct Dragged {
 }
 
 /// Returns the text of a scene in which the blocks of all objects except `object` are replaced by
-/// blanks. If `object` is `None`, this is done with all objects, as for a drag of the camera. All
-/// offsets stay the same, but the text is analyzed faster.
+/// blanks. `object` is `None` if the camera is dragged; the blocks of all objects are then
+/// replaced. All offsets stay the same, but the text is analyzed faster.
 pub fn alone(sources: &Sources, scene: &Scene, object: Option<usize>) -> Sources {
     let source = &sources.file;
     let mut text = String::with_capacity(source.text().len());
@@ -183,10 +183,10 @@ pub fn drag(
         .and_then(|step| view.snapped(current, &changes, step));
     let tolerance = snapped.map_or(TOLERANCE, |(_, step)| step);
     let first = snapped.map_or(first, |(decimals, _)| decimals);
-    // Returns whether all fields except those that the drag changes keep their exact values. This
-    // is checked only for a drag on a grid, because its tolerance is a whole step of the grid. A
-    // smaller change of another field, which may use the same number of the text, would be within
-    // that tolerance.
+    // Returns whether all fields that the drag should not change keep their exact values. This is
+    // checked only for a drag on a grid. The tolerance of such a drag is a whole step of the grid.
+    // A small change of another field, which may use the same number of the text, would be within
+    // this tolerance.
     let keeps_others = |found: FieldOwner| {
         let mut fields = block.fields.iter().map(|field| field.name.text);
         let is_meant = |field: &str| changes.iter().any(|change| change.name == field);
@@ -197,9 +197,10 @@ pub fn drag(
         let (changes, rounding) = together(&changes, decimals);
         let changes = &changes;
         let edits = edits(analysis, block, changes, &rounding);
-        // If the drag snaps back to the old position, no edit is needed. If the numbers of the text
-        // are in another unit than the grid, an empty list of edits does not prove this: the number
-        // of decimals may still be too small to show the change. The pictures are then compared.
+        // If the drag snaps back to the old position, no edit is needed. An empty list of edits
+        // does not always prove this. If a number of the text has another unit than the grid,
+        // `decimals` may be too small to show its change. The old position is then compared with
+        // the ideal one.
         let is_back = snapped.is_some() && rounded(current, changes, &rounding) == Some(current);
         let is_unchanged = snapped.is_some() && edits.as_ref().is_some_and(Vec::is_empty);
         if is_back || (is_unchanged && view.agree(ideal, current, tolerance)) {
@@ -396,7 +397,7 @@ fn landmarks(projection: &Projection, distance: f64) -> Option<Vec<DVec3>> {
     places.map(point).collect()
 }
 
-/// Compares possible results of a drag, as they appear in the picture before the drag.
+/// Compares possible results of a drag by their appearance in the picture.
 struct DragView<'a> {
     image: &'a Image,
     projection: Projection,
@@ -432,10 +433,10 @@ impl DragView<'_> {
         Some(((-9..=12).find(is_small)?, step))
     }
 
-    /// Returns whether the states `ideal` and `found` of the dragged object or camera are both
-    /// possible and look alike, i.e. whether all points that [`Self::marks`] returns for them are
-    /// at the same places within `tolerance` pixels. Points far outside of the picture are ignored,
-    /// except those that the pointer drags.
+    /// Returns whether the states `ideal` and `found` of the dragged object or camera look alike,
+    /// i.e. whether all points that [`Self::marks`] returns for them are at the same places within
+    /// `tolerance` pixels. Points far outside of the picture are ignored unless the pointer drags
+    /// them. Returns `false` if `found`, unlike `ideal`, breaks a condition of the language.
     fn agree(&self, ideal: FieldOwner, found: FieldOwner, tolerance: f64) -> bool {
         // A length that was rounded to few digits may have become 0, which the language forbids.
         // Such a result is rejected even if it looks alike.

@@ -95,8 +95,8 @@ pub struct DecimalRounding {
     /// tens, hundreds and so on.
     decimals: i32,
     /// Absolute values of the changes that [`together`] has rounded already. A number that changes
-    /// by one of these amounts is not rounded to `decimals` again. Otherwise points of the object
-    /// that are not dragged would move slightly.
+    /// by one of these amounts is not rounded to `decimals` again, because points of the object
+    /// that are not dragged would then move slightly.
     exact: Vec<f64>,
 }
 
@@ -291,7 +291,7 @@ impl<'s> NumberWriter<'_, 's> {
     }
 
     /// Adds an edit that appends an offset, such as `+ 0.5`, to an expression. Returns `None` if
-    /// the type of `by` has no negatives or multiples, as a colour.
+    /// values of the type of `by`, such as colours, have no negatives or multiples.
     fn offset(&mut self, behind: Span, by: Value) -> Option<()> {
         let zero = operate(Operator::Multiply, Value::Number(0.0), by)?;
         let text = self.sum(zero, by, Unit::Degrees);

@@ -1,5 +1,5 @@
-//! Looks at one pixel closely: what it shows, its exact colour, and how far each sampling method is
-//! from it.
+//! Examines one pixel: the colours that it shows, its exact mean colour, and the error of each
+//! sampling method.
 
 use std::cmp::Reverse;
 
@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// Numbers of samples for which the errors of all methods are computed. Each is 4 times the one
-/// before, so that a slope of −1/2 on logarithmic scales halves the error at each step.
+/// before. An error that shrinks with the square root of the number of samples halves at each step.
 pub const SAMPLE_COUNTS: [u64; 5] = [1, 4, 16, 64, 256];
 
 /// Number of seeds over which the errors of a method are averaged. With 32, the root mean square of
@@ -33,10 +33,10 @@ const SEEDS: u64 = 32;
 /// editor would take longer.
 const ROWS: u32 = 128;
 
-/// A pixel under the magnifying glass.
+/// Result of examining a pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Glass {
-    /// What the pixel shows, the colour with the largest area first.
+    /// Colours that the pixel shows, the one with the largest area first.
     pub seen: Vec<SeenColor>,
     /// The pixel, enlarged to a picture of 128 × 128 pixels. Each of these has the colour that is
     /// seen in its middle.
@@ -61,8 +61,8 @@ pub struct SeenColor {
     pub object: Option<usize>,
 }
 
-/// Errors of a pixel's colour by one method, for each number of [`SAMPLE_COUNTS`]. An error is the
-/// root mean square over the three channels, in linear light.
+/// Errors of a pixel's colour by one method, for each number of samples in [`SAMPLE_COUNTS`]. An
+/// error is the root mean square over the three channels, in linear light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodErrors {
     /// The method.
@@ -73,7 +73,7 @@ pub struct MethodErrors {
     pub own: [f64; SAMPLE_COUNTS.len()],
 }
 
-/// Looks at the pixel in column `x` and row `y`. `world` must be that of the scene.
+/// Examines the pixel in column `x` and row `y`. `world` must be built from `scene`.
 pub fn glass(scene: &Scene, world: &World, pixel: [u32; 2]) -> Glass {
     let [x, y] = pixel;
     let exact = Integrator::new(world).pixels(Area::pixel(x, y), &cancel::NEVER);
@@ -96,14 +96,15 @@ fn offset(i: u32, j: u32) -> DVec2 {
     (DVec2::new(f64::from(i), f64::from(j)) + 0.5) / f64::from(ROWS) - 0.5
 }
 
-/// Returns the palette index of what is seen at each point of a pixel, row by row.
+/// Returns, for each point at which a pixel is examined, the index of its colour in the world's
+/// palette. The points are in the order of the rows.
 fn slots(world: &World, [x, y]: [u32; 2]) -> Vec<usize> {
     let at = |point: u32| world.slot_at(x, y, offset(point % ROWS, point / ROWS));
     (0..ROWS * ROWS).map(at).collect()
 }
 
 /// Returns the colours that a pixel shows, the one with the largest area first. `world` must be
-/// that of the scene.
+/// built from `scene`.
 pub fn seen_colors(scene: &Scene, world: &World, pixel: [u32; 2]) -> Vec<SeenColor> {
     seen_in(scene, world, pixel, &slots(world, pixel))
 }
@@ -163,7 +164,7 @@ fn errors(
     }
 }
 
-/// Returns the mean colour of a pixel's samples, in linear light. It is black without samples.
+/// Returns the mean colour of a pixel's samples, in linear light; black if there are no samples.
 fn mean(sampler: &Sampler, world: &World, [x, y]: [u32; 2], points: &mut Points) -> [f64; 3] {
     let picture = world.picture();
     let sampling = Sampling::new(sampler, picture.width, picture.height);

@@ -24,8 +24,8 @@ use crate::{
 /// smaller tolerance would need numbers with more digits in the text.
 pub const TOLERANCE: f64 = 0.5;
 
-/// Message about a drag that is refused. The new numbers would be too large for a scene, or too
-/// large for `f64` to place the handle accurately.
+/// Message about a drag that is refused because the new numbers would be too large for a scene, or
+/// too large for `f64` to place the handle accurately.
 pub const TOO_FAR: &str = "that is too far away";
 
 /// Name of a handle, and its position in space. The position is `None` if the eye cannot see the
@@ -306,8 +306,8 @@ pub fn on_line(point: DVec3, axis: DVec3, to: DVec2, projection: &Projection) ->
     (moved, across)
 }
 
-/// Returns whether a point of space appears within [`TOLERANCE`] of the point `to` of the picture,
-/// apart from a difference in the direction `across`, which is parallel to the view plane.
+/// Returns whether a point of space appears within [`TOLERANCE`] of the point `to` of the picture.
+/// A difference in the direction `across`, which is parallel to the view plane, is ignored.
 pub fn appears_at(point: DVec3, across: DVec3, to: DVec2, projection: &Projection) -> bool {
     let across = DVec2::new(across.dot(projection.right), -across.dot(projection.top));
     projection.point(point).is_some_and(|seen| {
@@ -337,9 +337,10 @@ fn radius(sphere: &Sphere, to: DVec2, projection: &Projection) -> Result<f64, St
 }
 
 /// Returns a vector as long as `vector`, turned so that its drawn arrow ends at the point `to` of
-/// the picture. The arrow starts at the point `foot` in space and has the length `reach`. Two
-/// directions may do this; the result points towards the eye or away from it, as `vector` does. If
-/// no direction does it, returns the one whose arrow ends nearest to `to`.
+/// the picture. The arrow starts at the point `foot` in space and has the length `reach`. There may
+/// be two such vectors: one points towards the eye, the other away from it. The result is the one
+/// on the same side as `vector`. If there is none, returns the vector whose arrow ends nearest to
+/// `to`.
 pub fn turned_vector(
     foot: DVec3,
     vector: DVec3,

@@ -5,12 +5,12 @@
 //! points, and edits of the text. Points are computed in `f64`, which is accurate enough for a
 //! screen; the tracer decides which object is visible.
 //!
-//! `lines` projects lines into the picture, and `silhouette` computes that of a sphere. `handles`
-//! computes the handles of an object and moves the object, `camera` moves the camera, and `edits`
-//! writes the changed fields into the text. `drag` combines them. `add` writes new blocks. `pick`
-//! and `glass` look at one point and at one pixel. `observer` chooses a second camera, which looks
-//! at the scene and at the scene's camera from outside. `outside` draws the scene's camera in this
-//! second picture, and moves it there.
+//! `lines` projects lines into the picture, and `silhouette` computes the silhouette of a sphere.
+//! `handles` computes the handles of an object and moves the object, `camera` moves the camera, and
+//! `edits` writes the changed fields into the text. `drag` combines these three. `add` writes new
+//! blocks. `pick` examines one point of the picture, and `glass` one pixel. `observer` chooses a
+//! second camera, which looks at the scene and at the scene's camera from outside. `outside` draws
+//! the scene's camera in this second picture, and moves it there.
 
 mod add;
 mod camera;

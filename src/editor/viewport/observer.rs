@@ -1,4 +1,4 @@
-//! Chooses from where a scene is shown from outside, together with its own camera.
+//! Chooses a second camera that shows a scene, together with the scene's own camera, from outside.
 //!
 //! In: a scene, and the direction from which it is to be seen. Out: an [`Observer`], a second
 //! camera that sees the eye, the window and the objects near them. `outside` draws the scene's
@@ -19,13 +19,13 @@ use crate::{
 /// smaller angle, parallel lines look more parallel, and the view shows less depth. Chosen by eye.
 pub const USUAL_FOV: f64 = 30.0;
 
-/// Maximum share of the width and height of the observer's picture that the shown points fill. The
-/// rest is a margin for labels, and for dragging a handle outwards. Chosen by eye.
+/// Maximum fraction of the width and height of the observer's picture that the points to be shown
+/// fill. The rest is a margin for labels, and for dragging a handle outwards. Chosen by eye.
 const FILLED: f64 = 0.75;
 
 /// Maximum distance from the eye to another point that the observer must see, as a multiple of the
-/// distance from the eye to a corner of the window. Points farther away are left out, since the
-/// window would otherwise be too small to be recognised.
+/// distance from the eye to a corner of the window. Points farther away are left out; with them,
+/// the window would be too small to be recognised.
 const FARTHEST: f64 = 60.0;
 
 /// Maximum absolute value of the coordinates that determine the view, in metres. Larger coordinates
@@ -175,11 +175,10 @@ pub fn beside(camera: &Projection) -> DVec3 {
 /// window, the point that the camera looks at, the handle of the far plane, and the ends of the
 /// objects along each axis.
 ///
-/// An object is left out if it is too large or too far away. Its radius and the distance of its far
-/// side from the eye are compared with the greatest of three distances from the eye: those of the
-/// window, of the nearest object and of the point that the camera looks at. The radius must be less
-/// than 1.6 times this distance, and the far side nearer than 2.4 times. The handle of the far
-/// plane, too, is left out unless it is nearer than 2.4 times this distance.
+/// An object is left out if it is too large or too far away. Let l be the greatest of three
+/// distances from the eye: to a corner of the window, to the far side of the nearest object, and to
+/// the point that the camera looks at. An object's radius must be less than 1.6·l, and its far side
+/// nearer to the eye than 2.4·l. The handle of the far plane must be nearer than 2.4·l, too.
 fn shown_points(scene: &Scene, own: &Projection) -> Vec<DVec3> {
     let (eye, d) = (own.eye, scene.camera.view_height / (own.pitch * own.size.y));
     let corners = [

@@ -28,12 +28,14 @@ use crate::{
 /// parallel lines seem to meet at their ends.
 const ENDLESS: f64 = 1e4;
 
-/// Length of the drawn up vector, as a fraction of the distance from the eye to what it looks at.
-/// It is drawn longer or shorter than it is, so that it fits the drawing. Chosen by eye.
+/// Length of the drawn up vector, as a fraction of the distance from the eye to the point that the
+/// camera looks at. The up vector's own length is ignored, because it might not fit the drawing.
+/// Chosen by eye.
 const UP: f64 = 0.12;
 
-/// Minimum of a length or angle after a drag, as a fraction of its value before. A handle that is
-/// dragged past the point at which this value is zero stays there, as a slider does at its end.
+/// Minimum of a length or angle after a drag, as a fraction of its value before the drag. It keeps
+/// the value above zero. A handle that is dragged farther stops at the minimum, as a slider does at
+/// its end.
 const SMALLEST: f64 = 0.01;
 
 /// Maximum angle of view after a drag, in degrees. At 180 degrees the view plane would pass through
@@ -57,7 +59,7 @@ pub struct CameraOverlay {
 pub struct CameraHandle {
     /// Name of the field that the handle changes.
     pub name: &'static str,
-    /// Position in the observer's picture; `None` if it is not seen.
+    /// Position in the observer's picture; `None` if the observer cannot see the handle.
     pub at: Option<DVec2>,
     /// Text for the user: what the handle changes and, if it is a number, its current value.
     pub label: String,
@@ -115,7 +117,7 @@ impl Frustum {
         self.own.eye + self.towards(across) * depth
     }
 
-    /// Returns the rectangle at a depth, as a closed line.
+    /// Returns the cross-section of the pyramid at a depth, as a closed line.
     fn rectangle(&self, depth: f64) -> [DVec3; 5] {
         [CORNERS[0], CORNERS[1], CORNERS[2], CORNERS[3], CORNERS[0]]
             .map(|corner| self.at(corner, depth))
@@ -138,7 +140,8 @@ const LOWER: DVec2 = DVec2::new(0.0, -1.0);
 /// Name of the handle in the middle of the window.
 const WINDOW: &str = CAMERA.d.name;
 
-/// Returns the name and the place of the handle at the window's edge.
+/// Returns the name of the handle at the window's edge, and its position in halves of the window's
+/// width and height.
 fn edge_handle(lens: Lens) -> (&'static str, DVec2) {
     match lens {
         Lens::Distance(_) => (CAMERA.view_height.name, DVec2::Y),
@@ -262,8 +265,8 @@ pub fn moved_camera(
     let Frustum { own, slope, .. } = frustum;
     let (eye, mut moved) = (camera.eye, *camera);
     // Moves the handle parallel to `towards` to where it appears nearest to the pointer. Returns
-    // its signed distance from `from` in that direction, in lengths of `towards`. Fails if the
-    // handle then does not appear at the pointer.
+    // its signed distance from `from` in this direction, in units of the length of `towards`. Fails
+    // if the new position is behind the observer's eye, or inaccurate because of rounding errors.
     let along_line = |from: DVec3, towards: DVec3| {
         let (direction, length) = unit(towards);
         let (point, across) = on_line(at, direction, to, seen);
@@ -309,7 +312,7 @@ pub fn moved_camera(
         ("hfov", Lens::HorizontalFov(before)) => {
             moved.lens = Lens::HorizontalFov(angle(before, own.right, own.top)?);
         }
-        // The planes keep a part of their distance from each other.
+        // At least the fraction `SMALLEST` of the distance between the two planes remains.
         ("near", _) => {
             let most = camera.far.map(|far| far - SMALLEST * (far - camera.near));
             let near = along_line(eye, frustum.towards(LOWER))?.max(0.0);

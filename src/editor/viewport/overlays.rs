@@ -144,8 +144,8 @@ pub fn overlays(scene: &Scene, which: &ShownObjects) -> Overlays {
     }
 }
 
-/// Removes those parts of the checkerboards' outlines that are hidden by other objects. Otherwise,
-/// a square that is far larger than the objects would be drawn across all of them.
+/// Removes the parts of the checkerboards' outlines that other objects hide. Without this, a square
+/// that is far larger than the objects would be drawn across all of them.
 pub fn hide(overlays: &mut Overlays, scene: &Scene, world: &World) {
     let is_seen = |index: usize, at: DVec2| {
         let hit = pick(scene, world, at).and_then(|(hit, _)| hit);

@@ -23,9 +23,9 @@ pub const MOST_SAMPLES: u64 = 1 << 16;
 /// those that are not returned, because the pixel's colour depends on them.
 const MOST_TRACED: u64 = 1 << 20;
 
-/// Returns the object that is visible at the point `point` of the picture, and the colour at this
-/// point. The object is given as a hit of the view ray; it is `None` if only the background is
-/// visible. Returns `None` instead of the pair if the point is outside of the picture.
+/// Returns the hit at which the view ray through the point `point` of the picture meets the visible
+/// object, and the colour at this point. The hit is `None` if only the background is visible. The
+/// whole result is `None` if the point is outside of the picture.
 pub fn pick(scene: &Scene, world: &World, point: DVec2) -> Option<(Option<Hit>, Color)> {
     let picture = world.picture();
     let size = DVec2::new(f64::from(picture.width), f64::from(picture.height));

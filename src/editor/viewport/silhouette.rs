@@ -16,8 +16,8 @@ use crate::{
 const SIDES: usize = 64;
 
 /// Largest distance, in pixels, between the silhouette of a small sphere and the polygon that is
-/// drawn. It is too small to be seen. With it, a sphere of 10 pixels has 32 sides instead of 64,
-/// and the answer for a thousand spheres is shorter.
+/// drawn. It is too small to be seen. With it, a sphere with a radius of 10 pixels has 32 sides
+/// instead of 64, and the answer for a thousand spheres is shorter.
 const FLATNESS: f64 = 0.1;
 
 /// Cosines and sines of the corners of a regular polygon with [`SIDES`] sides, and of the first

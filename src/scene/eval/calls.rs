@@ -188,12 +188,12 @@ impl<'s> Evaluator<'_, 's> {
         let text = |element: &Element<'_>| self.sources.text(element.value.span).to_owned();
         let is_color = |name| css::color(name).is_some();
         let is_rgb = row.gives == Type::Color;
-        // The call that was probably meant is suggested. A function of a vector needs parentheses
-        // around the coordinates, so they are added; a function of numbers must not have them, so
-        // they are removed.
+        // The call that was probably meant is suggested. In `length(1, 2, 3)`, parentheses around
+        // the coordinates are missing, so they are added. In `rgb((255, 0, 0))`, the inner
+        // parentheses are wrong, so they are removed.
         let meant = match (row.takes, arguments) {
-            // The language has no transparency, so a fourth channel is left out. If the argument is
-            // a colour such as `red`, `rgb` itself is left out.
+            // The language has no transparency, so a fourth channel is removed. `rgb(red)` becomes
+            // `red`.
             (_, [r, g, b, _]) if is_rgb => Some(format!("rgb({})", [r, g, b].map(text).join(", "))),
             (_, [only])
                 if is_rgb

@@ -182,9 +182,9 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     /// Searches `value`, a part of the file, for a name that a `--set` argument of the command line
-    /// defines. Returns the first such name, and the span of its value in the argument. Returns
-    /// `None` if there is no such name. Otherwise, a mistake in `value` must be corrected in the
-    /// argument, not in the file.
+    /// defines. Returns the first such name, and the span of its value in the argument. A mistake
+    /// in `value` must then be corrected in the argument, not in the file. Returns `None` if
+    /// `value` has no such name.
     pub(super) fn set_in(&self, value: &tree::Value<'s>) -> Option<(&'s str, Span)> {
         let ValueKind::Name(name) = value.kind else {
             return value.parts().into_iter().find_map(|part| self.set_in(part));
@@ -222,11 +222,11 @@ impl<'s> Evaluator<'_, 's> {
 
     /// Returns fixes that add a unit to a number, the likelier unit first.
     ///
-    /// A number derived from `pi`, or of at most pi, is more likely in radians, any other in
-    /// degrees. A number above 2 pi is certainly in degrees. If the unit is uncertain, the titles
-    /// also give the angle in the other unit. If some parts of the expression `value` suggest
-    /// degrees and others radians, the fixes are marked as placeholders, so that the author must
-    /// choose.
+    /// Radians come first if the formula of `value` suggests them, for example by using `pi`, or if
+    /// it suggests no unit and the number is at most pi, but not 0. Otherwise, degrees come first.
+    /// If the number is at most 2 pi, but not 0, the titles also give the angle in the other unit.
+    /// If some parts of the formula suggest degrees and others radians, the fixes are marked as
+    /// placeholders, so that the author must choose.
     pub fn units(&self, value: &tree::Value<'s>, number: f64) -> [(Unit, Fix); 2] {
         let text = self.sources.text(value.span);
         let is_literal = is_plain_number(value);

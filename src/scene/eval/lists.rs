@@ -134,8 +134,8 @@ impl<'s> Evaluator<'_, 's> {
 
 /// Returns an example for the missing third coordinate of a vector whose other coordinates are `x`
 /// and `y`: the greater of `x` and `y`, or 1 if both are 0, because a zero vector has no direction.
-/// The example is also right for the `sides` of a triangle, since `x`, `y` and the greater of them
-/// always form one. Returns `None` if `x` or `y` is not a number.
+/// If the vector is the `sides` of a triangle, this choice makes a triangle of any two positive
+/// lengths. Returns `None` if `x` or `y` is not a number.
 fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
     let (a, b): (f64, f64) = (x.parse().ok()?, y.parse().ok()?);
     Some(match (a > b, a == 0.0 && b == 0.0) {
@@ -146,7 +146,7 @@ fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
 }
 
 /// Interprets four numbers as a vector in which one number was written with a decimal comma, as in
-/// `(1,5, 2, 3)`. The decimal comma is the only one without a space after it. Returns `None` if
+/// `(1,5, 2, 3)`. The decimal comma is the only comma without a space after it. Returns `None` if
 /// there is no such comma, or more than one.
 fn with_decimal_comma(elements: &[Element<'_>], texts: &[&str]) -> Option<String> {
     let is_tight = |pair: &[Element<'_>]| match pair {

@@ -202,10 +202,10 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     /// Returns the known name that is nearest to the undefined name `name`, and whether it is a
-    /// safe replacement. The candidates are the names that the scene defines, and also the colours
-    /// if a colour is wanted (`is_color`), or else the constants. A candidate whose value does not
-    /// have the type `wanted` is left out. If no candidate is near and the wanted type is unknown,
-    /// all colours are tried.
+    /// safe replacement. The candidates are the names that the scene defines. If a colour is wanted
+    /// (`is_color`), the named colours are candidates, too; otherwise, the constants are. A
+    /// candidate whose value does not have the type `wanted` is left out. If no candidate is near
+    /// and the wanted type is unknown, all colours are tried.
     fn nearest(
         &self,
         name: &str,

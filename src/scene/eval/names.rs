@@ -1,4 +1,4 @@
-//! Keeps the names that are defined at the current place of the text, and the reports about names.
+//! Keeps the names that are defined so far while a scene is evaluated, and the reports about names.
 
 use std::{
     cell::RefCell,
@@ -20,19 +20,18 @@ use crate::{
     },
 };
 
-/// Names that are defined at the current place of the text, and the reports about names.
+/// Names that are defined so far while a scene is evaluated, and the reports about names.
 #[derive(Debug, Default)]
 pub struct Names<'s> {
     /// Values of the `let`s and of the indices (counters of a `for`) that are defined so far.
     pub(super) defined: HashMap<&'s str, Defined>,
     /// The names of `defined`, in the order of their definitions.
     order: Vec<&'s str>,
-    /// Words in parts of the file that could not be parsed. Each such part was reported. Its words
-    /// may be names that the author meant to define there, so these names are not reported as
-    /// undefined.
+    /// Words of the text that could not be parsed. The text was reported as an error. It may
+    /// contain definitions of names, so uses of these words are not reported as undefined.
     pub(super) parts: HashSet<&'s str>,
-    /// Span of the name in each definition of the file, including definitions below the current
-    /// place.
+    /// Span of the name in each definition of the file, including definitions that are not
+    /// evaluated yet.
     definitions: HashMap<&'s str, Span>,
     /// Names of the file's objects. If one of them is used as a value, the report says that an
     /// object is no value.
@@ -40,10 +39,10 @@ pub struct Names<'s> {
     /// Names of the indices of all blocks. An index is the counter of a `for`, such as `i` in
     /// `for i < 8`.
     pub(super) indices: HashSet<&'s str>,
-    /// Number of comparisons that may still be made between undefined names and known ones, in
-    /// search of the most similar known name.
+    /// Budget of comparisons between undefined names and known ones. The comparisons find the most
+    /// similar known name.
     budget: ComparisonBudget,
-    /// Problems of undefined names. They are kept apart because some of the other problems are
+    /// Problems of undefined names. Other problems are kept elsewhere, because some of them are
     /// discarded when a value is evaluated again.
     pub(in crate::scene) problems: RefCell<Problems>,
     /// Names that were reported as undefined. Further uses become labels of the same problem.
@@ -135,10 +134,10 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Removes and returns the `let` with the same name as `index` if it stands further down in the
-    /// file, so that the index can be defined. Otherwise returns `None`. Such a `let` may already
-    /// be defined if there are `--set` arguments, since all definitions are then evaluated before
-    /// the blocks.
+    /// Removes the `let` that has the name of `index`, stands further down in the file and is
+    /// defined already, so that the index can be defined. Returns the removed `let`, or `None` if
+    /// there is none. Definitions further down are defined already if there are `--set` arguments,
+    /// since all definitions are then evaluated before the blocks.
     pub fn hide_below(&mut self, index: Name<'s>) -> Option<(&'s str, Defined)> {
         let place = self.place(index.text)?;
         let is_below = place.source == index.span.source && place.start > index.span.start;
@@ -186,9 +185,9 @@ impl<'s> Names<'s> {
         self.definitions.get(name).copied()
     }
 
-    /// Returns the names that are defined so far, with which an undefined name is to be compared.
-    /// The total number of such comparisons is limited; this function deducts one for each known
-    /// name from the number that remains. Returns `None` if too few remain.
+    /// Returns the names that are defined so far, for comparison with an undefined name. Deducts
+    /// one comparison for each of them, and for each predefined name, from `budget`, which limits
+    /// the total time. Returns `None` if too few comparisons remain.
     pub(super) fn to_compare(&self) -> Option<&[&'s str]> {
         // Approximate number of predefined colours and constants. An undefined name is compared
         // with them too. An estimate is enough, because it only limits the number of searches.
@@ -204,8 +203,8 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Returns the number of comparisons that may still be made between undefined names and known
-    /// ones, in search of the most similar known name.
+    /// Returns the budget of comparisons between undefined names and known ones. The comparisons
+    /// find the most similar known name.
     pub fn budget(&self) -> &ComparisonBudget {
         &self.budget
     }

@@ -118,8 +118,8 @@ impl<'s> Lowering<'s> {
         // Computes `top`, the direction of the picture's top if the camera looks straight along up
         // or in the opposite direction. `across` is the component of `level_direction(up)` that is
         // perpendicular to up. `top` is `-across` if the camera looks along up, and `across` if it
-        // looks in the opposite direction. Only the direction of `up` matters, so the vector is
-        // scaled to keep its square from overflowing.
+        // looks in the opposite direction. The length of `up` does not matter, so `up` is scaled;
+        // otherwise its square could overflow.
         let up = up / up.abs().max_element();
         let level = level_direction(up);
         let across = level * up.dot(up) - up * level.dot(up);
@@ -332,7 +332,7 @@ impl Lowering<'_> {
 }
 
 /// Returns, as text, the value of `lookat` or `direction` with which the camera looks at `point`.
-/// Returns `None` if there is no such direction.
+/// Returns `None` if the view direction would be parallel to up, or if the value is not finite.
 fn towards(camera: &Camera, point: DVec3) -> Option<String> {
     let (from, to) = match camera.view {
         View::Lookat(_) => (camera.eye, point),

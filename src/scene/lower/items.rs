@@ -55,8 +55,8 @@ impl<'s> Lowering<'s> {
                     let problem = problem.at(name.span, "this name is taken").help(help);
                     self.problems.push(problem);
                 }
-                // The name is defined without a value. A use of the name may mean the predefined
-                // value or this definition, so uses are not reported.
+                // The name is defined without a value. A use of the name could mean the predefined
+                // value or this definition, so it has no value and is not reported.
                 self.names.define(name, None, &definition.value);
             }
             (None, None) => {
@@ -143,8 +143,8 @@ impl<'s> Lowering<'s> {
             let text = self.sources.text(*span);
             let mentioned = row.field_names().filter(|name| mentions(text, name));
             lowered.meant.extend(mentioned);
-            // If indices could not be parsed, the names in them are not reported again at their
-            // uses.
+            // If the indices of a `for` could not be parsed, their names are not reported as
+            // undefined where they are used.
             if Some(span.start) < open {
                 self.names.know_words(text);
             }
@@ -170,7 +170,8 @@ impl<'s> Lowering<'s> {
             }
             tried.push(field.name);
         }
-        // Unknown fields are handled last, because the known ones limit what they can mean.
+        // Unknown fields are handled last, because they cannot mean a field that the block already
+        // has.
         for field in unknown {
             self.unknown_field(field, &mut lowered);
         }

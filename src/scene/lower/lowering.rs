@@ -1,5 +1,5 @@
-//! State of lowering, i.e. of converting a tree to a scene: what is known while the items are
-//! processed.
+//! Keeps the state of lowering, i.e. of the conversion of a tree to a scene: the names, blocks,
+//! objects and problems that were found so far.
 
 use std::{collections::HashMap, sync::atomic::AtomicBool};
 

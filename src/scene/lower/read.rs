@@ -160,8 +160,8 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Returns whether an item makes an object, whatever the other items of the file are: it uses
-    /// no defined name, and no `--set` argument changes it.
+    /// Returns whether an item is an object that does not depend on other items or `--set`
+    /// arguments: it uses no defined name, and no argument changes it.
     fn stands_alone(&self, item: &Item<'s>) -> bool {
         let Item::Block(block) = item else {
             return false;

@@ -65,8 +65,8 @@ impl<'s> Lowering<'s> {
     /// Returns the combinations of the indices' values, concatenated in order. For `for i < 2, j <
     /// 2`, these are 0 0, 0 1, 1 0 and 1 1. If a count is wrong, reports it and returns `None`.
     ///
-    /// Counts that depend on no index are evaluated first. If their product is too large, this is
-    /// reported before many combinations are stored, whatever the order of the indices.
+    /// Counts that depend on no index are evaluated first. If their product is too large, an error
+    /// is thus reported before many combinations are stored.
     fn combinations(&mut self, block: &Block<'s>, repetition: &Repetition<'s>) -> Option<Vec<u32>> {
         let most = MOST_OBJECTS.saturating_sub(self.objects.len());
         if !self.are_counted_before(repetition) {
@@ -362,10 +362,10 @@ impl<'s> Lowering<'s> {
         let with_index: Vec<Span> = with_index
             .filter(|it| self.depends(*it, repetition))
             .collect();
-        // The objects are built in the order of the indices' values, starting with all indices 0. A
-        // mistake that occurs for all values is therefore found for these zeros. If it is in a
-        // value that depends on no index, a label with the indices would be misleading, so none is
-        // added.
+        // The first object is the one whose indices are all 0. A mistake that does not depend on
+        // the indices is found when this object is built. A label with the indices would then be
+        // misleading, so it is added only if the value with the mistake contains the name of an
+        // index.
         let is_first = values.iter().all(|&value| value == 0);
         // If an expression depends on an index, a fix must not replace it by the value that it has
         // for one combination.

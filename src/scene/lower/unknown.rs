@@ -1,7 +1,7 @@
 //! Reports fields that a block does not have, with the fields that were probably meant.
 //!
-//! A fix renames a field only if that leads to no error: the block has neither the new field nor
-//! one that excludes it, and the value has the field's type or can be converted to it.
+//! A fix renames a field only if this causes no error. The block must not have the new field or a
+//! field that excludes it. The value must have the new field's type, or must be convertible to it.
 
 use super::{fixes::quoted, lowering::Lowering};
 use crate::{
@@ -22,8 +22,8 @@ use crate::{
 };
 
 /// Largest possible picture. It is used instead of the scene's image when a sampler is checked
-/// before the picture's size is known. A number of samples that is not too large for this picture
-/// is not too large for any other.
+/// before the picture's size is known. A number of samples that is allowed for this picture is
+/// allowed for every other picture, too.
 const LARGEST: Image = Image {
     width: 1 << 20,
     height: 1 << 20,

@@ -64,8 +64,8 @@ impl Cuboid {
     }
 
     /// Returns the value of the field `name` if this is `center` or `size`, and otherwise `None`.
-    /// The value is rounded to fifteen digits, which removes the rounding errors of computing it
-    /// from the corners.
+    /// The value is computed from the corners, which causes rounding errors. It is rounded to
+    /// fifteen digits to remove them.
     pub(in crate::scene) fn center_or_size(&self, name: &str) -> Option<DVec3> {
         if name == BOX.center.name {
             Some(tidy(self.min.midpoint(self.max)))
