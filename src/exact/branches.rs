@@ -15,19 +15,19 @@ use crate::{
 
 use super::conic_segment::Arc;
 
-/// Maximum error of an arc's area, as computed in `f64`, divided by the arc's width in pixels. If
-/// the error is larger, the arc is computed again in double-double. With this value, all arcs of a
-/// curve across the pixel contribute at most 4e-15 square pixels to the error, far below the
-/// default tolerance of 9e-10.
+/// Maximum error of an arc's area, as computed in `f64`, divided by the arc's width in pixels.
+/// Above it, the arc is computed again in double-double. With this value, all arcs of a curve
+/// across the pixel contribute at most 4e-15 square pixels to the error, far below the default
+/// tolerance of 9e-10.
 const ARC_TOLERANCE: f64 = 32.0 * f64::UNIT;
 
 /// Maximum |dy/dx| of a line that is treated as a function y(x). A steeper line is treated as
 /// vertical, because its x changes by less than eight unit roundoffs across the pixel.
 const MAX_SLOPE: f64 = (1u64 << 50) as f64;
 
-/// Margin around the pixel. A branch of a conic (one of its two functions y(x)) beyond this margin
-/// is ignored. The unit is the branch's largest |y| or one pixel, whichever is greater. The value
-/// is millions of times the rounding errors of y, so that no branch inside the pixel is ignored.
+/// Relative distance from the pixel beyond which a branch of a conic (one of its two functions
+/// y(x)) is ignored. The unit is the branch's largest |y|, but at least one pixel. The value is
+/// millions of times the rounding errors of y, so that no branch inside the pixel is ignored.
 const OUTSIDE_MARGIN: f64 = 1.0 / (1u64 << 30) as f64;
 
 /// A curve as a function y(x).
@@ -142,9 +142,9 @@ impl ConicGraph {
         let at = Double::from_f64(x);
         let minus = b.times(&at).plus(e).negated().hi;
         // In exact arithmetic, (−b ± √Δ)/C and g/(−b ∓ √Δ) give the same y (`ConicGraph`). The
-        // formula that does not subtract two nearly equal numbers is used. At the end of a branch,
-        // Δ is 0 and x is rounded, so the exact Δ at the rounded x may be slightly negative. Only
-        // the first formula is accurate in this case: it gives −b/C.
+        // formula in which nothing cancels is used. If the computed Δ is 0, nothing cancels in
+        // either formula. The exact Δ may then be slightly negative, because x is rounded at the
+        // end of a branch. Only the first formula is then accurate: it gives −b/C.
         if minus * side >= 0.0 || root == 0.0 {
             (minus + root) / c.hi
         } else {
@@ -187,17 +187,17 @@ impl ConicGraph {
 impl<'a> ConicSpan<'a> {
     /// Returns the conic's branch with the sign `side` (1 or −1) as a function y(x) ([`Track`]),
     /// and an arc or chord that approximates it ([`Section`]). Returns `None` if the branch is not
-    /// finite or lies outside the pixel. The section is `None` if the branch turns too much for a
-    /// single arc; the caller then halves the range.
+    /// finite or lies outside the pixel. The section is `None` if the branch turns too much to be
+    /// represented by one arc; the caller then halves the range.
     pub fn branch(&self, side: f64) -> Option<(Track<'a>, Option<Section>)> {
         let Self { graph, x, roots } = self;
         let y = [0, 1, 2].map(|i| graph.y(x[i], roots[i], side));
         if !y[1].is_finite() {
             return None;
         }
-        // A convex or concave branch is nowhere farther from its chord than twice `sagitta`, its
-        // distance from the chord in the middle. If its two ends and its middle are all outside the
-        // pixel by more than twice `sagitta`, the whole branch is therefore outside.
+        // If the branch is curved in one direction only, its distance from the chord is at most
+        // twice `sagitta`, the distance in the middle. So if its two ends and its middle are all
+        // outside the pixel by more than twice `sagitta`, the whole branch is outside.
         let sagitta = y[1] - 0.5 * (y[0] + y[2]);
         let size = y.iter().fold(1.0, |size: f64, y| size.max(y.abs()));
         let beyond = 0.5 + 2.0 * sagitta.abs() + OUTSIDE_MARGIN * size;
@@ -216,10 +216,9 @@ impl<'a> ConicSpan<'a> {
                     ..straight
                 })
             }
-            // If a branch is very flat, rounding errors may prevent the computation of an arc. The
-            // branch is treated as straight if the distance of its middle from the chord is at most
-            // the rounding error `flat`. This error consists of six roundings of each y and two of
-            // the mean of two y.
+            // A branch may be so flat that rounding errors prevent the computation of an arc. It is
+            // treated as straight if the distance between its middle and the chord is at most the
+            // rounding error `flat`: six roundings of each y, and two of the mean of two y.
             None => {
                 let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
                 (sagitta.abs() <= flat).then_some(Section {
@@ -257,9 +256,9 @@ impl<'a> ConicSpan<'a> {
             end,
             weight: w2.sqrt(),
         };
-        // Minimum weight of an arc. The maximum is its reciprocal. For a circle, the weight is the
-        // cosine of half the angle by which the arc turns, so a weight below 1/2 means a turn of
-        // more than 120°. An arc beyond these limits is rejected, and the caller halves it.
+        // Minimum weight of an arc, and the reciprocal of the maximum. For a circle, the weight is
+        // the cosine of half the arc's turn, so a weight below 1/2 means a turn of more than 120°.
+        // An arc beyond these limits is rejected, and the caller halves it.
         const MIN_WEIGHT: f64 = 0.5;
         let turns_little = arc.weight > MIN_WEIGHT && arc.weight < 1.0 / MIN_WEIGHT;
         (control.x >= 0.0 && control.x <= end.x - start.x && turns_little).then_some((arc, off))
@@ -280,7 +279,7 @@ struct Tangents {
     /// Square of the arc's weight. If the arc is written as a rational quadratic Bézier curve whose
     /// end points have the weight 1, the weight of its control point is the arc's weight.
     w2: f64,
-    /// Maximum error of the area between the arc and its chord, in square pixels.
+    /// Maximum error of the area between the arc and its chord.
     off: f64,
 }
 
@@ -289,22 +288,19 @@ impl Tangents {
     /// and bounds the error of the area between the arc and its chord.
     fn new<T: Real<Radius = f64>>(factors: &[T; 6], ends: &[ArcEnd<T>; 2]) -> Self {
         // The area between arc and chord is part of the triangle of the chord and the two tangents.
-        // Its error has two causes: the errors of the tangents' directions, and the error of the
-        // arc's weight.
+        // It has an error from the tangents' directions and one from the arc's weight.
         //
         // Directions: let κ be 1 plus the sum of the absolute values of the terms of the conic's
         // gradient, divided by the gradient's length. The gradient has a relative error of κ
-        // roundings, so a tangent's direction has an error of κ roundings, in radians. If a tangent
-        // of length l turns by a small angle φ, the triangle's area changes by at most l²·φ/2. The
-        // area between arc and chord changes at most as much.
+        // roundings, so a tangent's direction has an error of κ roundings, in radians. If a side of
+        // length l turns by a small angle φ, the triangle's area changes by at most l²·φ/2. The
+        // area between arc and chord changes no more.
         //
         // Weight: its square is the quotient of two values of the conic's quadratic part Q. Each
         // value of Q has two errors: the roundings of its terms, and the error of its argument, a
-        // vector. The relative error of the area between arc and chord is at most that of the
-        // weight.
-        //
-        // An error of √Δ (`ConicGraph`) is not included. It moves points and tangents together,
-        // like an error of the conic itself.
+        // vector. The area between arc and chord grows no faster than the weight. An error of √Δ
+        // (`ConicGraph`) is not included: it moves points and tangents together, like an error of
+        // the conic itself.
         let [a, b, c, d, ..] = factors;
         let product = |[x, y]: &[T; 2], [z, w]: &[T; 2]| x.times(z).plus(&y.times(w));
         let length = |[x, y]: &[T; 2]| libm::hypot(x.to_f64(), y.to_f64());
@@ -422,8 +418,8 @@ impl Section {
     pub fn overlap(&self, other: &Self, left: f64, right: f64) -> f64 {
         let controls = [self, other].map(|section| section.arc.map(|(_, arc)| arc.control.x));
         let places = [Some(left), controls[0], controls[1], Some(right)];
-        // Between the ends and the control points, the bounds of both curves are linear in x. Their
-        // difference is therefore greatest at an end or a control point.
+        // The bounds of both curves are linear in x between the ends and the control points, so
+        // that their difference is greatest at one of these x.
         let hulls = places
             .into_iter()
             .flatten()
@@ -433,23 +429,21 @@ impl Section {
         hulls.min(rise.unwrap_or(f64::INFINITY))
     }
 
-    /// Returns two bounds for arcs over the same range of x. The first is how far this arc rises
-    /// above `other`. The second is the distance of the two arcs in y. Returns `None` unless both
-    /// curves are arcs that bulge to the same side. The bounds are tight if the arcs are nearly
-    /// parallel or nearly coincide.
+    /// Returns two bounds for arcs over the same range of x: how far this arc rises above `other`,
+    /// and how far the two are apart in y. Returns `None` unless both curves are arcs that bulge to
+    /// the same side. The bounds are tight if the arcs are nearly parallel or nearly coincide.
     fn parallel_bounds(&self, other: &Self) -> Option<[f64; 2]> {
-        // Points of the two arcs with the same curve parameter are compared. The height of a vector
-        // (x, y) is y − s·x, where s is the slope of this arc's chord. If the weights of the arcs
-        // are equal, the vector between two such points is a weighted mean of the vectors between
-        // corresponding control points, so its height is at most the largest of theirs. If the
-        // weights differ, a point moves by at most their difference times the longest side of the
-        // control polygon. The two points may also differ in x. This changes the height by at most
-        // the difference times the steepest slope.
+        // Compares points of the two arcs with the same curve parameter. The height of a vector is
+        // its y minus that of the vector along this arc's chord with the same x. If the weights are
+        // equal, a point is the same weighted mean of the control points in each arc. The height
+        // between the points is then at most that between two control points. Unequal weights move
+        // a point by at most their difference times the length of a side of the control polygon. A
+        // difference in x changes y by at most its product with the steepest slope.
         //
         // Rounding errors move a point by less than the sum of two terms. The first is eight times
         // the error of the arc's area, divided by the arc's width. The second is the rounding error
-        // of x, times the slope of the steepest tangent. The second term is needed because the
-        // control point of a narrow arc may move along the arc, which hardly changes the area.
+        // of x, times the slope of the steepest tangent. The second is needed because rounding may
+        // move the control point of a narrow arc along the arc, which hardly changes the area.
         let ((up, a), (other_up, b)) = (self.arc.as_ref()?, other.arc.as_ref()?);
         if up != other_up {
             return None;
