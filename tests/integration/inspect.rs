@@ -151,9 +151,9 @@ fn probe_sees_the_colour_that_the_picture_shows() {
 fn probe_works_far_outside_the_picture_and_with_extreme_lenses() {
     let text =
         "camera { eye (0, 0, 4) direction (0, 0, -1) } sphere { center (40, 0, 0) radius 1 }";
-    // The centre of the sphere is ten times as far to the right as it is deep. The view plane is at
-    // a distance of 2 m by default, so the centre is seen at x = 20 m in it, where 1 m is 225
-    // pixels.
+    // The centre of the sphere is 40 m to the right of the view axis, at a depth of 4 m. The view
+    // plane is 2 m from the eye by default, so it shows the centre at x = 20 m. In the picture, 1 m
+    // of the view plane is 225 pixels.
     let probe = probed(text, 400.0 + 20.0 * 225.0, 225.0);
     assert_eq!(probe.color.to_string(), "#808000");
     assert!(probed(text, -1e300, 1e300).hits.is_empty());

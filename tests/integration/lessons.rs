@@ -220,7 +220,7 @@ fn the_error_keeps_the_number_of_samples_per_pixel_and_has_a_limit() {
         let lesson = parsed(&format!("```check\n{condition}\n```")).unwrap();
         solves(&lesson, &format!("{SCENE}sampler {{ {sampler} }}"), SCENE)
     };
-    // Both samplers have 4 samples per pixel, because the picture has 800 × 450 pixels.
+    // Both samplers take 4 samples per pixel, because 4 · 800 · 450 = 1 440 000.
     for sampler in [
         "method regular per_pixel 4",
         "method regular total 1_440_000",
@@ -231,7 +231,7 @@ fn the_error_keeps_the_number_of_samples_per_pixel_and_has_a_limit() {
     assert!(sampled("method exact", "error = 0"));
     assert!(sampled("method exact per_pixel 1000", "error = 0"));
     assert!(!sampled("per_pixel 1000", "error >= 0"));
-    // An exact picture of so many edges takes too long.
+    // The condition does not hold, because an exact picture of so many edges takes too long.
     let many =
         "sphere for i < 60, j < 40 { center ((i - 30) / 9, (j - 20) / 9, -i / 9)  radius 0.9 }";
     let lesson = parsed("```check\nerror >= 0\n```").unwrap();

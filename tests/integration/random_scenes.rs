@@ -207,8 +207,8 @@ fn random_scene(random: &mut Random) -> (String, Scene) {
     }
 }
 
-/// The tests below compare exact pictures with samples only for the kinds of objects that random
-/// scenes contain, so every kind must occur in them.
+/// `random_scenes_render_alike_in_parts_and_agree_with_samples` tests only the kinds of objects
+/// that random scenes contain, so every kind must occur in them.
 #[test]
 fn every_kind_of_object_is_in_random_scenes() {
     let mut random = Random::new(1);
@@ -341,9 +341,9 @@ fn random_scenes_render_alike_in_parts_and_agree_with_samples() {
         let Rendered::Exact(exact) = assert_parts_agree(&computed, random, &text) else {
             panic!("not computed");
         };
-        // In an optimized build on an idle machine, the exact means of a pixel take at most two
-        // seconds. (The pixel is computed twice: for the whole picture, and for one of the four
-        // parts.) The limit of 20 seconds allows for slower builds and busy machines.
+        // The test computes each exact pixel twice: for the whole picture, and for one of the four
+        // parts. On an idle machine, an optimized build takes at most two seconds for both. The
+        // limit of 20 seconds per pixel allows for slower builds and busy machines.
         let (time, pixels) = (start.elapsed(), whole(&scene).pixels() as u32);
         assert!(time < pixels * Duration::from_secs(20), "{time:?}: {text}");
         if is_comparable(&scene) {

@@ -291,9 +291,9 @@ fn other_files_permissions_and_reads_trigger_no_picture() {
     let permissions = fs::metadata(watch.path("a.scn")).unwrap().permissions();
     fs::set_permissions(watch.path("a.scn"), permissions).unwrap();
     watch.folder.read("a.scn");
-    // If reading the file or setting its permissions caused a picture, the program would render it
-    // within a short time. The test waits longer than this time. Such a picture would then be
-    // counted in addition to the picture of the next save.
+    // A picture caused by reading the file or setting its permissions would be written within a
+    // short time. The test waits longer than this time. It then counts the pictures, including the
+    // one of the next save.
     thread::sleep(Duration::from_millis(100));
     watch.becomes("blue");
     watch.wait("it says so", || watch.count("wrote") >= 2);

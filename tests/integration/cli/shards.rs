@@ -34,8 +34,8 @@ fn parts_put_together_are_the_file_of_a_single_render() {
     }
 }
 
-/// Crops of different heights lie beside each other, so that rows of the whole picture come from
-/// several files.
+/// Merges crops of different heights that lie beside each other, so that a row of the whole picture
+/// comes from several files.
 #[test]
 fn crops_count_as_parts() {
     let folder = folder();
@@ -62,8 +62,8 @@ fn crops_count_as_parts() {
     }
 }
 
-/// A PNG stores at most 1 MiB of text, so it does not store a longer scene. Even so, `merge` must
-/// recognize parts of different scenes.
+/// In a PNG file, `render` stores at most 1 MiB of text, and leaves out a longer scene. Even so,
+/// `merge` must recognize parts of different scenes.
 #[test]
 fn parts_of_a_long_scene_are_put_together_without_its_text() {
     let folder = folder();

@@ -102,9 +102,10 @@ pub fn dragged(text: &str, moved: &Drag<'_>) -> Result<String, String> {
 }
 
 /// Applies a drag to the text `start` followed by `text`, and returns the part of the result after
-/// `start`. `words` begins with the handle. For an object, the point to which the handle is dragged
-/// follows, and perhaps the axis or plane of the movement. For the camera (`object` is `None`), two
-/// points of the pointer follow: the first and the last.
+/// `start`. `words` is separated by spaces and begins with the name of the handle. For an object,
+/// the x and y to which the handle is dragged follow, and optionally the axis or plane of the
+/// movement. For the camera (`object` is `None`), the pointer's x and y before and after the drag
+/// follow.
 fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> String {
     let words: Vec<&str> = words.split(' ').collect();
     let point = |at: usize| dvec2(words[at].parse().unwrap(), words[at + 1].parse().unwrap());

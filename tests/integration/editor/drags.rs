@@ -195,8 +195,8 @@ proptest! {
         let Ok(changed) = dragged(&text, &moved) else { return Ok(()) };
         let mut after = read(&changed);
         prop_assert_eq!(after.objects.len(), before.objects.len());
-        // The drag may have changed a `let` whose value the camera uses, too. The handle must
-        // follow the pointer as seen by the camera before the drag, so this camera is used.
+        // The drag may change a `let` that the camera uses, too. The handle must be at the pointer
+        // as seen by the camera before the drag, so the old camera is put back.
         after.camera = before.camera;
         let place = handle_position(&after, handle, &before);
         let found = project(&after, place);
@@ -298,8 +298,8 @@ fn drag_repeatedly(block: &str, handle: &str, step: Option<f64>) -> Vec<Shape> {
     shapes
 }
 
-/// Coordinates that the drag does not move keep their values, except for rounding errors below
-/// 1e-12.
+/// A drag of a box's face leaves the other faces where they are. A drag of a triangle's centre
+/// leaves the edge vectors as they are. Rounding errors below 1e-12 are allowed.
 #[test]
 fn dragging_one_handle_leaves_the_other_sides_and_edges_unchanged() {
     let steps = [None, Some(8.0), Some(3.0), Some(1.0)];

@@ -167,7 +167,7 @@ proptest! {
         let Ok(changed) = dragged(&text, &drag(observer, handle, to, step)) else { return Ok(()) };
         let after = read(&changed);
         prop_assert_eq!(&after.objects, &before.objects);
-        // All fields except the handle's have the values that they had.
+        // Only the field of the handle may change.
         let mut expected = before.camera;
         match handle {
             "eye" => expected.eye = after.camera.eye,
@@ -181,8 +181,8 @@ proptest! {
         prop_assert_eq!(after.camera, expected, "{}: {}", handle, changed);
         let found = seen(&after, &observer, place(&after, handle));
         let tolerance = 0.5 + step.unwrap_or(0.0) + 1e-6;
-        // `towards` is the direction in space in which the handle moves if the number that it
-        // changes grows.
+        // Each handle changes one number of the camera. `towards` is the direction in space in
+        // which the handle moves if this number grows.
         let place = place(&before, handle);
         let own = facts(&before);
         let towards = match handle {
@@ -193,14 +193,16 @@ proptest! {
             "d" => -own.w,
             "view_height" => own.v,
             "near" | "far" => -own.w - own.v * (own.view_height / (2.0 * own.d)),
-            // The handle `up` moves on a sphere, and the handle of an angle moves only along the
-            // axis, so neither can reach every pointer. The handles of angles are tested below.
+            // The handle `up` moves on a sphere. The handle of `fov` or `hfov` moves on a line, but
+            // the drag moves the edge of the frustum to the pointer, not the handle.
+            // `a_dragged_angle_opens_the_frustum_to_the_pointer` tests these drags.
             _ => return Ok(()),
         };
         let moved = seen(&before, &observer, place + towards * 1e-4) - seen(&before, &observer, place);
         let left = (to - found).dot(moved.normalize());
-        // A handle stops at a hundredth of its length, and a plane at a hundredth of its distance
-        // from the other plane. The written number is rounded.
+        // `d` and `view_height` stop at a hundredth of their values before the drag. The near and
+        // far planes stop when their distance from each other is a hundredth of what it was; `near`
+        // also stops at 0. The limit 0.015 allows for the rounding of the written number.
         let near = before.camera.near;
         let [shorter, nearer] = [facts(&after).d / own.d, after.camera.view_height / before.camera.view_height];
         let between = |depth: f64| before.camera.far.map_or(1.0, |far| (far - depth) / (far - near));
@@ -258,8 +260,8 @@ fn a_dragged_angle_opens_the_frustum_to_the_pointer() {
     }
 }
 
-/// If the window is dragged along the view axis, `d` becomes its new distance from the eye. If it
-/// is dragged to the eye or behind it, it stays just in front of the eye.
+/// A window that is dragged along the view axis changes `d`, its distance from the eye. A window
+/// that is dragged to the eye or behind it stays just in front of the eye.
 #[test]
 fn a_window_dragged_along_the_axis_changes_d_as_far_as_the_pointer_moved() {
     let text = "camera { eye (0, 0, 0) direction (0, 0, -1) d 2 } sphere { center (0, 0, -9) }";
@@ -282,8 +284,8 @@ fn a_window_dragged_along_the_axis_changes_d_as_far_as_the_pointer_moved() {
 /// pointer again when the pointer comes back.
 #[test]
 fn a_handle_dragged_too_far_stays_at_its_last_place() {
-    // Camera, handle, where the pointer is (above the eye, and in front of the
-    // eye), and the field before and after.
+    // Each case has fields of the camera, a handle, the pointer's distances above the eye and in
+    // front of it, and the field before and after the drag.
     let cases = [
         ("near 1 far 3", "near", (-1.75, 3.5), "near 1", "near 2.98"),
         ("near 1 far 3", "near", (0.1, -0.2), "near 1", "near 0"),
@@ -322,8 +324,8 @@ fn a_handle_dragged_too_far_stays_at_its_last_place() {
     );
 }
 
-/// The ray through a pixel is drawn from the eye to the surface that the ray hits. Two points of it
-/// are marked: in the window, and on the surface.
+/// The ray through a pixel is drawn from the eye to the surface that the ray hits. Two points of
+/// the ray are marked: in the window, and on the surface.
 #[test]
 fn the_pointed_ray_ends_at_what_it_meets() {
     let scene = read("camera { eye (0, 1, 8) lookat (0, 1, 0) d 2 } sphere { center (0, 1, 0) }");

@@ -87,9 +87,9 @@ fn ask_about_all(analysis: &Analysis<'_>) {
 
 sampled_and_exhaustive!(every_prefix_and_edit_of_an_example_gets_consistent_editor_answers);
 
-/// Tests an example, and the beginnings of it that end at every second character. Also reads the
-/// example without one of its bytes, and tests it without eight successive characters, as when a
-/// user rewrites a part of a line.
+/// Queries an example, and its beginnings up to every second character. Also queries the example
+/// without eight successive characters, as when a user rewrites a part of a line, and reads it
+/// without one of its bytes.
 fn every_prefix_and_edit_of_an_example_gets_consistent_editor_answers(effort: Effort) {
     for (index, text) in effort.first(3, examples()).enumerate() {
         let whole = sources(&text);

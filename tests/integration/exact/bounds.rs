@@ -22,8 +22,8 @@ fn bounds_stay_below_1e_9_and_certify_nearly_all_bytes() {
     }
 }
 
-/// The spheres intersect one another within one pixel, and most of their silhouettes are hidden.
-/// The error bound must still be at most 1e-9.
+/// Forty spheres intersect one another within one pixel, and most of their silhouettes are hidden.
+/// The error bound of the pixel must still be at most 1e-9.
 #[test]
 fn a_pixel_of_40_piercing_spheres_is_known_within_1e_9() {
     let heap = spheres(&mut Random::new(7), 40, 20.0, [2.0, 22.0]);

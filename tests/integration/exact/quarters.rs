@@ -40,8 +40,8 @@ fn quarters_add_up_for_tilted_triangles_side_by_side() {
     }
 }
 
-/// Boxes and triangles intersect in segments. Each segment ends at an edge of one of the two
-/// objects, because the objects intersect only partly.
+/// Boxes and triangles pierce one another only partly. A face of a box and a triangle then
+/// intersect in a segment that ends at an edge of one of the two.
 #[test]
 fn quarters_add_up_for_partly_piercing_objects() {
     let mut random = Random::new(72);

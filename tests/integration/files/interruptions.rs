@@ -137,7 +137,8 @@ fn a_killed_new_command_leaves_a_complete_file_or_none() {
     assert!(absent > 0 && present > 0, "{absent} {present}");
 }
 
-/// The process is killed at various times, from before it begins to write until it has answered.
+/// Kills `pinhole studio` at various times, from before it begins to write the file until it has
+/// answered the request.
 #[test]
 fn a_killed_first_save_leaves_a_complete_file_or_none() {
     use crate::studio::client::Studio;

@@ -1,4 +1,4 @@
-//! Tests of output folders: a command replaces only files that a command has written there.
+//! Tests of output folders: a command replaces a file there only if a command has written it.
 
 use std::fs;
 

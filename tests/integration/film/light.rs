@@ -46,8 +46,8 @@ fn a_mean_equals_the_quotient_in_extended_precision() {
 #[test]
 fn a_mean_is_rounded_once() {
     // The mean is (3 · 0.1 + 7 · 0.3) / 10. As doubles, 0.1 is too large by 5.6e-18, and 0.3 is too
-    // small by 11.1e-18. So the exact mean of the doubles is 0.24 − 6.1e-18. Near it, doubles are
-    // 28e-18 apart, and the nearest one is also the nearest to 0.24.
+    // small by 11.1e-18. So the exact mean of the doubles is 0.24 − 6.1e-18. Doubles near 0.24 are
+    // 28e-18 apart, so the double nearest to this mean is also the one nearest to 0.24.
     let found = mean([(3, [0.1; 3]), (7, [0.3; 3])].into_iter());
     assert_eq!(found, [0.24; 3]);
     // All of the 2^53 samples are white except one, which is black. So the mean is exactly 1 −

@@ -1,5 +1,5 @@
-//! Tests that the first diagnostic is about a missing brace or parenthesis, and that no fix removes
-//! anything that the author wrote.
+//! Tests of texts that lack one brace or parenthesis. The first diagnostic must be about the
+//! missing delimiter, and no fix may remove anything that the author wrote.
 
 use std::{collections::BTreeSet, fs};
 
@@ -51,9 +51,8 @@ const OF_DELIMITERS: [&str; 7] = [
     "nested_braces",
 ];
 
-/// Returns whether all characters of a text remain, in order, when the fixes of its diagnostics are
-/// applied. White space is not compared. `most` limits which fixes are applied: only safe ones, or
-/// also others.
+/// Returns whether all characters of a text, except white space, remain in order when the fixes of
+/// its diagnostics are applied. If `most` is `Safe`, only safe fixes are applied.
 fn keeps_all(text: &str, most: Applicability) -> bool {
     let fixed = scene::fix_all(&sources(text), most).text;
     let mut left = fixed.chars();

@@ -159,8 +159,9 @@ fn is_near(new: &str, old: &str) -> bool {
     suggest::nearest(old, [new]).is_some() || suggest::is_among(old, new)
 }
 
-/// Returns whether `new` is the scene language's word with the meaning of `old`. `old` is a word of
-/// another program's language, or `new` in another notation.
+/// Returns whether a fix may replace `old` by `new`, a word of the scene language, because both
+/// mean the same. `old` is a word of another program's language, or `new` in another notation, such
+/// as `0xff` for `ff`.
 fn is_known_for(new: &str, old: &str) -> bool {
     let is_tried = |block: &schema::BlockRow| {
         let field = block.field_tried(old);
@@ -204,10 +205,10 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
     if !lost.is_empty() && !is_listed {
         complaints.push(format!("numbers are lost: {lost:?}"));
     }
-    // A fix may join two successive words, such as `look at`, to a known word, `lookat`. The names
-    // alone do not show whether a fix has done so. Therefore, for each of the last four pairs that
-    // can be joined, the comparison is made with and without joining. The comparison that finds the
-    // fewest lost and added names is used.
+    // A fix may join two successive names to a known word: `look at` becomes `lookat`. From the
+    // names alone, it is not known which pairs a fix has joined. Therefore, the last four pairs
+    // that may have been joined are compared both joined and separate, in all combinations. The
+    // combination with the fewest lost and added names is used.
     const WAYS: i32 = 1 << 4;
     let read = |of| [true, false].map(|is_two| words(of, is_two).names);
     let (before, after) = (read(text), read(&fixed.text));
@@ -245,17 +246,17 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
 /// Returns the names of `before` that are not in `after`, and the names of `after` that are not in
 /// `before`.
 ///
-/// A fix may have joined two successive names of `before`, such as `look at`, to a known word,
-/// `lookat`. Each pair that may have been joined has a bit of `joins`. If the bit is set, the pair
-/// is compared as one name. The lowest bit is for the last pair in the text. If there are more
-/// pairs than bits, the sign bit is used for all further pairs.
+/// A fix may have joined two successive names of `before` to a known word: `look at` becomes
+/// `lookat`. Each pair that may have been joined has a bit of `joins`, beginning with the lowest
+/// bit for the last pair in the text. If the bit is 1, the pair is compared as one name. The
+/// highest bit also stands for all pairs beyond the number of bits.
 fn unmatched_names(
     before: &[String],
     after: &[String],
     mut joins: i32,
 ) -> (Vec<String>, Vec<String>) {
     let (mut names, mut new) = (before.to_vec(), after.to_vec());
-    // Only a known word can be the result of joining two words, as `lookat` is of `look at`.
+    // A fix joins two words only if the result is a known word, such as `lookat`.
     let is_known = |word: &String| {
         BLOCKS.iter().any(|block| block.field(word).is_some())
             || schema::css::color(word).is_some()
@@ -304,8 +305,8 @@ pub fn slips(texts: &[String], count: usize, mut is_tried: impl FnMut(&str)) {
     }
 }
 
-/// Returns `text` with one random mistake at a word, number or sign: for example, this piece is
-/// removed, doubled, misspelled, or followed by another one.
+/// Returns `text` with one random mistake: for example, a word, number or sign is removed, doubled,
+/// misspelled, or followed by another one.
 fn slip(text: &str, random: &mut Random) -> String {
     const OTHERS: [&str; 72] = [
         "radius",

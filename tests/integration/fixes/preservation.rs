@@ -71,8 +71,8 @@ fn safe_fixes_keep_numbers_and_names_of_mistyped_scenes() {
     assert_none(&complaints);
 }
 
-/// The texts come from a run with a hundred thousand random mistakes. Each had lost content to a
-/// fix.
+/// The texts come from a run with a hundred thousand random mistakes. In each, a fix had removed
+/// something that the author wrote.
 #[test]
 fn texts_that_once_lost_content_to_a_fix_keep_it() {
     let texts = [

@@ -14,7 +14,8 @@ box { center (2.2, 0.75, -0.5) }
 ";
 
 /// Rows: a file name, the arguments of `render` that make the file, its verdict, and the identifier
-/// of its mistake. In `scatter.png`, a third of the pixels has no sample.
+/// of its mistake. `scatter.png` has one sample per pixel on average; 1/e of the pixels, i.e. 37 %,
+/// have none.
 const PICTURES: &str = "
     crop.png -> --set sampler.method=exact --crop 8,4,40,30 -> right ->
     exact.exr -> --set sampler.method=exact -> right ->

@@ -120,9 +120,8 @@ fn gradescope_gets_a_score_only_where_it_is_known() {
         );
         for test in tests {
             assert_eq!(test["visibility"], "visible");
-            // A single mistake may cost more points than an equal share of the submission's points
-            // for each test. So only the points of the whole submission are stated, and none for a
-            // test.
+            // With `--points`, only the whole submission has points. If each test had an equal
+            // share of them, one mistake could cost more points than its test is worth.
             assert!(test.get("score").is_none() && test.get("max_score").is_none());
         }
         let failed = tests.iter().filter(|test| test["status"] == "failed");

@@ -8,10 +8,9 @@ impl Program {
     /// Returns the colour of the surface that a ray sees, and the factor by which shading
     /// multiplies the colour's light. The ray starts at `from`; `view` is the view direction.
     pub fn trace(&self, from: DVec3, ray: DVec3, view: DVec3) -> ([u8; 3], f64) {
-        // These are two of the mistakes in the treatment of surfaces behind the eye. With
-        // `Behind::First`, the signed parameters t of the hits are compared, so surfaces behind the
-        // eye come first. Otherwise, surfaces are compared by their distance, even those behind the
-        // eye.
+        // The parameter t of a hit is negative if the hit is behind the eye. With `Behind::First`,
+        // the hit with the least t comes first, and otherwise the hit with the least |t|. With
+        // `Behind::ByDistance`, this may be a hit behind the eye. Both variants are mistakes.
         let order = |t: f64| {
             if self.behind == Behind::First {
                 t

@@ -180,8 +180,8 @@ fn street() -> Program {
     street
 }
 
-/// Turns the triangle about its centroid. `turned` maps the vector from the centroid to a corner to
-/// the turned vector.
+/// Turns the triangle about its centroid. `turned` gets the vector from the centroid to a corner,
+/// and returns the turned vector.
 pub fn turn(program: &mut Program, turned: impl Fn(DVec3) -> DVec3) {
     if let Some(Shape::Triangle(corners)) = program.shape("Sail") {
         let middle = (corners[0] + corners[1] + corners[2]) / 3.0;

@@ -244,7 +244,7 @@ pub struct Program {
     pub behind: Behind,
     pub visible: Visible,
     pub squares: Squares,
-    /// Offset that the program adds to the index of each square ([`Squares`]); 0 is correct, and 1
+    /// Offset that the program adds to the number of each square ([`Squares`]); 0 is correct, and 1
     /// swaps the colours of a checkerboard.
     pub parity: i64,
     pub encoding: Encoding,

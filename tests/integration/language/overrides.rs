@@ -27,8 +27,8 @@ pub fn meaning(sources: &Sources) -> [String; 2] {
     [format!("{settings:?}"), format!("{shapes:?}")]
 }
 
-/// In each row, the override has the same effect as an edit of the text that replaces the second
-/// cell by the third.
+/// Each row has `--set` arguments, a part of the text, and a replacement for this part. The
+/// arguments must have the same effect as the replacement.
 #[test]
 fn a_set_argument_equals_the_edited_text() {
     let table = "

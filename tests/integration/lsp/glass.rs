@@ -81,8 +81,9 @@ fn the_glass_agrees_with_the_exact_picture_and_with_probe() {
             (shares.iter().sum::<f64>() - 1.0).abs() <= 1e-9,
             "{shares:?}"
         );
-        // A grid of 128 × 128 samples sees the same colours. Their fractions may differ only by the
-        // samples of the rows and columns of cells that an edge crosses.
+        // Among 128 × 128 samples in a grid, a surface's fraction may differ from its fraction of
+        // the pixel only by the cells that the surface's edges cross. As many cells as in four rows
+        // of the grid are allowed.
         let asked = json!({ "pixel": pixel, "method": "regular", "count": 128 * 128 });
         let many = client.ask("pinhole/samples", asked);
         let colors = many["colors"].as_array().expect("a list");
@@ -119,8 +120,9 @@ fn the_glass_agrees_with_the_exact_picture_and_with_probe() {
 }
 
 /// The glass reports the error of each method with the scene's own seed (`own`). It must be the
-/// error of the pixel in the rendered picture. Also tests a lower limit of the typical error over
-/// several seeds.
+/// error of the pixel in the rendered picture. The glass also reports the root mean square of the
+/// errors with 32 seeds (`typical`). The own seed is one of them, so `typical` must be at least
+/// `own`/√32.
 #[test]
 fn errors_of_the_own_seed_are_those_of_the_picture() {
     let mut client = LocalClient::with(SCENE);
@@ -141,7 +143,8 @@ fn errors_of_the_own_seed_are_those_of_the_picture() {
                 let errors = errors.iter().find(|it| it["method"] == method.name());
                 let errors = errors.expect("every method");
                 let own = numbers(&errors["own"])[at];
-                // Sums over the samples are added in different orders.
+                // The glass and the picture add the samples in different orders, so their roundings
+                // differ.
                 assert!(
                     (own - (squares / 3.0).sqrt()).abs() <= 1e-12,
                     "{method} {count}"
@@ -157,7 +160,7 @@ fn errors_of_the_own_seed_are_those_of_the_picture() {
     // The last of the `PIXELS` has a single colour, so every sample has the right colour.
     for errors in answers[4]["errors"].as_array().expect("a list") {
         if errors["method"] != "scatter" {
-            // A mean of equal numbers may be rounded.
+            // The mean of equal colours may have a rounding error.
             assert!(
                 numbers(&errors["typical"])
                     .iter()

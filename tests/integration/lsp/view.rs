@@ -86,7 +86,7 @@ fn a_view_answers_what_the_scene_with_that_camera_answers() {
             "{method} {params}"
         );
     }
-    // A request for a view has not changed the picture by the scene's own camera.
+    // The requests for a view must not change the picture by the scene's own camera.
     assert!(shown(&client.ask("pinhole/frame", json!({}))) == rendered(SCENE, ""));
 }
 
@@ -192,9 +192,9 @@ fn views_that_are_no_cameras_are_refused() {
     }
 }
 
-/// A request for a picture of another view cancels the unfinished picture of the view before. It
-/// does not cancel the picture of the scene's own camera. A picture of another view with few
-/// samples is finished before that picture.
+/// A request for a picture from a view cancels the unfinished picture from the previous view, but
+/// not the picture by the scene's own camera. A picture from a view with few samples is finished
+/// before the slow picture by the scene's own camera.
 #[test]
 fn a_frame_of_a_newer_view_takes_the_place_of_an_older_one() {
     let text = SCENE.replace("width 83  height 61", "width 1000  height 1000");

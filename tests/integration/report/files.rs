@@ -102,8 +102,8 @@ fn a_report_folder_holds_complete_tables_charts_and_a_page() {
     let order = ["class=\"verdict\">Use ", "<svg ", "<table>", "<img "];
     let places = order.map(|what| page.find(what).expect(what));
     assert!(places.is_sorted(), "{places:?}");
-    // A character is escaped only if it is invisible or reorders text. The page must not contain
-    // any such character.
+    // Invisible characters, and characters that reorder text, would be written as escapes, such as
+    // `\u{202e}`. The page must not need any.
     assert!(!page.contains("\\u{"), "{page}");
     for image in elements(&document, "img") {
         assert!(!image.attribute("alt").unwrap().is_empty());

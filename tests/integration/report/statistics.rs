@@ -271,10 +271,10 @@ fn progress_reaches_1_when_a_sample_count_is_requested_twice() {
     let control = Control::default();
     let measured = measure(&subject(), &read(SCENE), &request, &control, &tell).unwrap();
     assert!(measured.exact.is_none());
-    // The request names 1 and 4 samples per pixel, and each of the two runs measures both. The
-    // first run measures 1 sample first. All runs together measure 10 samples per pixel, so the
-    // progress is 1/10 after the first measurement, and 5/10 after the second. The second run may
-    // begin with 4 samples.
+    // The request names 1 and 4 samples per pixel. Each of the two runs measures both, so the
+    // progress is a fraction of 10 samples. The first run begins with 1 sample, so the progress is
+    // 1/10 after the first measurement, and 5/10 after the second. The second run may begin with 4
+    // samples.
     let told = told.into_inner();
     assert_eq!((told.len(), &told[..2]), (4, &[0.1, 0.5][..]));
     assert!(told[2] > 0.5 && told[3] == 1.0, "{told:?}");

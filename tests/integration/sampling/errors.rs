@@ -2,8 +2,8 @@
 
 use super::*;
 
-/// For several boxes within a pixel, the fraction of points in the box, averaged over many pixels,
-/// is the area of the box.
+/// Averaged over many pixels, the fraction of a pixel's points that lie in a box must be the area
+/// of the box. Several boxes are tested.
 #[test]
 fn every_method_except_regular_and_scatter_is_unbiased() {
     for method in Method::SAMPLED {

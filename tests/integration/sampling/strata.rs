@@ -38,8 +38,8 @@ fn assert_one_in_each_cell(points: &[DVec2], columns: u64, rows: u64) {
     assert!(each_once(points.iter().map(cell)), "{columns} × {rows}");
 }
 
-/// Returns the number of cells in each row of a grid of `n` cells, as the language's reference
-/// specifies.
+/// Returns the number of cells in each row of the grid of the method `regular` with `n` samples.
+/// Asserts that the grid has as many rows as the language's reference specifies.
 fn rows(n: u64) -> Vec<u64> {
     let root = (n as f64).sqrt();
     let count = (1..=n)
@@ -135,9 +135,8 @@ fn halton_is_the_shifted_halton_sequence() {
     let n = 4_u64.pow(4) * 3_u64.pow(3);
     let points = points(Method::Halton, n, 0, [3, 5]);
     let origin = points[0];
-    // Returns how far a coordinate of a point is beyond that of the sequence's first point, in
-    // units of 2^−53, rounded down. The pixel's sides have the length 1. If the result would be
-    // negative, 1 is added.
+    // Returns how far a coordinate of a point is beyond the coordinate of the first point, in units
+    // of 2^−53, rounded down. A negative distance wraps around: the pixel's side, 1, is added.
     let from = |offset: f64, origin: f64| {
         (((fraction(offset) + (1 << 54) - fraction(origin)) & ((1 << 54) - 1)) >> 1) as u64
     };

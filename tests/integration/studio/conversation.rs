@@ -80,7 +80,7 @@ fn studio_pictures_equal_those_of_render() {
     assert_eq!(error["code"], -32803, "{error}");
 }
 
-/// The pictures of an animation are those of the text with each value, and last equally long.
+/// An animation has a picture of the text with each value, and shows each picture equally long.
 #[test]
 fn an_animation_has_a_picture_for_each_value() {
     let (_folder, studio) = studio();
@@ -118,7 +118,7 @@ fn an_animation_has_a_picture_for_each_value() {
         assert_eq!(*pause, Some((500, 1000)));
     }
     assert!(found[0].0 != found[1].0 && found[1].0 == found[3].0);
-    // Each mistake is told, and the next file is made nevertheless.
+    // Each invalid request gets an error, and the next request is still answered.
     for (params, message) in [
         (of(&["1", "0"]), "with 0 the scene has errors"),
         (of(&[]), "an animation needs `values`"),

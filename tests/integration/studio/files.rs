@@ -42,8 +42,8 @@ fn a_save_writes_the_file_and_notifies_other_pages() {
     assert_eq!(save(&mut first, "// é\r\n", Some(SCENE))["result"], saved());
     assert_eq!(folder.text("a.scn"), "// é\r\n");
     assert_eq!(told(&mut second), [json!("// é\r\n"), Value::Null]);
-    // `base` is the content that the page knows, and is out of date here. Saving still succeeds if
-    // the file already contains the text.
+    // `base` is the content that the page knows. In the first row, `base` is out of date, but the
+    // save succeeds because the file already contains the text.
     for (text, base) in [("// é\r\n", "x"), ("// 2", "// é\r\n")] {
         assert_eq!(save(&mut second, text, Some(base))["result"], saved());
     }

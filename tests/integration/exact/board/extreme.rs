@@ -1,5 +1,5 @@
-//! Tests of exact pictures of a checkerboard in fields of view of nearly 180°, and of less than a
-//! millionth of a degree. The error bound of a pixel may then be large, but it must hold.
+//! Tests of exact pictures of a checkerboard in fields of view of nearly 180°, and of about a
+//! millionth of a degree or less. The error bound of a pixel may then be large, but it must hold.
 
 use super::*;
 
@@ -47,8 +47,8 @@ fn quarters_add_up_in_extreme_views(effort: Effort) {
     }
 }
 
-/// The fields of view are narrower than a millionth of a degree, and the camera looks anywhere
-/// below the horizon.
+/// The fields of view are less than 2e-6 degrees. The horizon passes the picture's centre at a
+/// distance of at most a quarter of the picture's height.
 #[test]
 #[ignore = "exhaustive"]
 fn quarters_add_up_in_random_narrow_views() {

@@ -52,9 +52,9 @@ fn view(random: &mut Random) -> String {
 
 sampled_and_exhaustive!(ordinary_views_are_known_within_1e_9);
 
-/// Compares exact pictures of random views with samples, within the error bounds. In the first 30
-/// views, also compares each pixel with the mean of its four quarters. An exhaustive run compares
-/// 384 000 pixels. Prints how many error bounds exceed 1e-11.
+/// Compares exact pictures of random views with samples. In the first 30 views, also compares each
+/// pixel with the mean of its four quarters. An exhaustive run compares 384 000 pixels. Prints how
+/// many error bounds exceed 1e-11.
 fn ordinary_views_are_known_within_1e_9(effort: Effort) {
     let mut random = Random::new(31);
     let (mut pixels, mut above) = (0, 0);
