@@ -164,8 +164,8 @@ fn assert_pictures_agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32;
         let (light, bound) = pixel(&one, x, y);
         let (other, other_bound) = pixel(&other, other_x, other_y);
         let difference = difference(light, other);
-        // The light of each of the two pixels is rounded, which its error bound need not include.
-        // Therefore, `f64::EPSILON` is added.
+        // The light of each pixel is rounded, and the pixel's error bound need not include this
+        // rounding. Therefore, `f64::EPSILON` is added for the two pixels.
         let most = bound + other_bound + f64::EPSILON;
         assert!(difference <= most, "{x}, {y}: {difference:e} of {before:?}");
         assert!(bound <= 1e-6, "{x}, {y}: {bound:e} of {before:?}");

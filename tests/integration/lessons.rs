@@ -189,7 +189,7 @@ fn conditions_compare_values_ranges_lists_and_the_start() {
         ("inspect/camera/fov_deg in -90 .. 39.9", false),
         ("inspect/camera/looks in [\"up\", \"level\"]", true),
         ("inspect/camera/looks in [\"up\", \"down\"]", false),
-        // Names and axes stand for indices.
+        // In a path, the name of an object or of an axis stands for its index.
         ("inspect/objects/1/radius = 1.1", true),
         ("inspect/objects/Ball/radius = 1.1", true),
         ("inspect/objects/Tile[1]/min/0 = 0.75", true),

@@ -31,7 +31,7 @@ fn tokens(text: &str) -> Vec<Range<usize>> {
     tokens.map(|token| token.start..token.end).collect()
 }
 
-/// In each text, one token is missing, doubled or replaced, or another token follows it.
+/// In each tested text, one token is missing, doubled or replaced, or another token follows it.
 #[test]
 fn fixes_of_syntax_slips_remove_their_problem_and_add_no_error() {
     let others = "radius 2 , = ( ) { } let red - * deg # \" ;".split(' ');
@@ -56,8 +56,8 @@ fn fixes_of_syntax_slips_remove_their_problem_and_add_no_error() {
     trial.finish_with_more_than(500);
 }
 
-/// In each text, one word, number or list is replaced by another one. A list that contains lists is
-/// not replaced as a whole.
+/// In each tested text, one word, number or list is replaced by another one. A list that contains
+/// lists is not replaced as a whole.
 #[test]
 fn fixes_of_semantic_slips_remove_their_problem_and_add_no_error() {
     let mut trial = Trial::default();

@@ -21,7 +21,7 @@ pub enum Shape {
     Triangle([DVec3; 3]),
     /// A box: its least and its greatest corner.
     Box(DVec3, DVec3),
-    /// A checkerboard: its height, the side of its squares, and their second colour.
+    /// A checkerboard: its height, the side of its squares, and the colour of its odd squares.
     Board(f64, f64, [u8; 3]),
 }
 
@@ -216,8 +216,8 @@ pub struct Program {
     pub axes: Axes,
     /// Factor by which all light is multiplied; 1 is correct.
     pub gain: f64,
-    /// Whether the program compares the distances of the near and the far plane with the distances
-    /// of surfaces from the eye, instead of with their depths.
+    /// Whether the program applies the near and the far plane to the distances of surfaces from the
+    /// eye, instead of to their depths.
     pub clips_distances: bool,
     /// Whether the program forgets to test one of a triangle's edges.
     pub misses_edge: bool,
