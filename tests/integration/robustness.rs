@@ -105,8 +105,9 @@ fn random_bytes_are_read_soon_and_refused(effort: Effort) {
 
 sampled_and_exhaustive!(every_short_sequence_of_words_is_parsed_to_its_end);
 
-/// Parses every sequence of three words from a short list (four in an exhaustive run), alone and at
-/// the start of a block or list. Asserts that the parser reaches the end of the text.
+/// Reads every sequence of three words from a short list, in a block. In an exhaustive run, the
+/// sequences have four words, and also stand alone or in a list. Asserts that reading ends soon,
+/// and that there is a scene unless an error is reported.
 fn every_short_sequence_of_words_is_parsed_to_its_end(effort: Effort) {
     let words = "{ } ( ) , = < - for let sphere e 8 # radius // \n";
     let words: Vec<&str> = words.split(' ').collect();

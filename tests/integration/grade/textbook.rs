@@ -21,7 +21,7 @@ pub enum Shape {
     Triangle([DVec3; 3]),
     /// A box: its least and its greatest corner.
     Box(DVec3, DVec3),
-    /// A checkerboard: its height, the side of its squares, and the colour of its odd squares.
+    /// A checkerboard: its height, the side of its squares, and their second colour.
     Board(f64, f64, [u8; 3]),
 }
 
