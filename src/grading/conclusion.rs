@@ -1,6 +1,6 @@
-//! Computes the verdict on a picture from the best hypothesis about the program that made it. The
-//! hypothesis's mistakes are named if they explain the picture and are plausible. Otherwise they
-//! are reported as guesses.
+//! Computes the verdict on a picture. In: the best hypothesis about the program that made the
+//! picture, i.e. a set of mistakes. If the mistakes explain the picture and are plausible, the
+//! verdict names them. Otherwise it reports them as guesses.
 
 use super::{
     hypotheses::{Candidate, Mistake, Shows, mistakes, parameters},
@@ -16,43 +16,44 @@ use crate::{
     scene::Scene,
 };
 
-/// Minimum fraction of the picture's squared error that a reported mistake explains. A larger value
-/// would hide small mistakes. A smaller one would report mistakes that explain almost nothing.
+/// Minimum fraction of the picture's squared error that a mistake must explain to be reported. A
+/// larger value would hide small mistakes. A smaller one would report mistakes that explain almost
+/// nothing.
 const LEAST_EXPLAINED: f64 = 1e-5;
 
-/// Minimum number of wrong fields in one object that makes a hypothesis implausible. Few students
-/// mistype two fields of an object, and hardly any three.
+/// Minimum number of wrong fields in one object at which a hypothesis is implausible. Few students
+/// mistype two fields of an object, and hardly any mistype three.
 const IMPLAUSIBLE_FIELDS: usize = 3;
 
-/// Threshold of displacement, in pixels: wrong numbers that displace every object by less are
-/// considered implausible. It is larger than a displacement that correct programs can cause: if all
-/// pixels use the same four random sample positions, their mean is typically 0.2 pixels from the
-/// pixel's middle.
+/// Threshold of displacement, in pixels. Wrong numbers that displace every object by less are
+/// considered implausible, because correct programs can cause such displacements. For example, if
+/// all pixels use the same four random sample positions, the mean position is typically 0.2 pixels
+/// from the pixel's middle.
 const LEAST_DISPLACEMENT: f64 = 0.4;
 
-/// Maximum fraction of the picture's squared error that guesses may leave unexplained. Guesses that
-/// leave more are not reported: the picture then mostly shows something else, so the guesses would
-/// mislead.
+/// Maximum fraction of the picture's squared error that guesses may leave unexplained. If they
+/// leave more, the picture mostly shows something else. The guesses would mislead, so they are not
+/// reported.
 const USELESS_REST: f64 = 0.5;
 
 /// Placeholder in a mistake's message for the factor by which light is scaled. The factor is
 /// estimated from the picture.
 const GAIN: &str = "{gain}";
 
-/// Identifier of the mistake that rays are parallel. Such rays start in a window. The distance of
-/// the view plane and the angle of view then affect only the size of this window. So if these
-/// fields have wrong numbers as well, the message says that the window has a wrong size.
+/// Identifier of the mistake that rays are parallel. Parallel rays start in a window, whose size
+/// depends on the distance of the view plane and the angle of view. If these fields are wrong as
+/// well, the message says only that the window's size is wrong ([`PARALLEL_OF_OWN_SIZE`]).
 const PARALLEL: &str = "parallel_rays";
 const PARALLEL_OF_OWN_SIZE: &str =
     "the rays are parallel: they leave along −w, from a window whose size is not the scene's";
 
-/// Returns the verdict, given what the search found: the best hypothesis about the program that
-/// made the picture, and whether it explains the picture.
+/// Returns the verdict on a picture. `found` is the result of the search: the best hypothesis about
+/// the program that made the picture, and whether this hypothesis explains the picture.
 pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Verdict {
     let (scene, jpeg) = (judge.scene, judge.fine.jpeg);
     let right = Candidate::correct(scene);
-    // If the picture is explained, the verdict needs no further search, so it is not reported as
-    // cut short.
+    // A search that explained the picture is complete, even if it used up its budget of work. So
+    // the verdict says that the search was cut short only if the picture is unexplained.
     let is_explained = matches!(found, Some((_, true)));
     let is_cut = judge.work.is_cut() && !is_explained;
     let mut verdict = match found {
@@ -79,9 +80,9 @@ pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Ve
     verdict
 }
 
-/// Returns whether a pixel has a colour that no mixture of the scene's colours has: one of its
-/// channels is less, or greater, than in all colours of the scene. A correct pixel is a mean of
-/// these colours. Returns `false` for a JPEG, which is not tested.
+/// Returns whether some pixel has a colour that is no mixture of the scene's colours. A correct
+/// pixel is a mean of these colours. So its channels lie between the least and the greatest values
+/// of all colours. Returns `false` for a JPEG, which is not tested.
 fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
     let colors = scene.objects.iter();
     let colors = colors.flat_map(|object| object.shape.colors());
@@ -99,14 +100,13 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
     jpeg.is_none() && film.pixels().iter().any(is_other)
 }
 
-/// Returns the mistakes of the hypothesis `last` in words. Each comes with the share of the squared
-/// error between the correct scene and the student's picture that disappears if the mistake is
-/// assumed. `is_explained` says whether all mistakes together explain the picture.
+/// Returns the mistakes of the hypothesis `last` in words. For each, computes which fraction of the
+/// picture's squared error it explains. `is_explained` says whether all mistakes together explain
+/// the picture.
 fn attributed(judge: &Judge, last: &Candidate, is_explained: bool) -> Vec<NamedMistake> {
     let scene = judge.scene;
     // Most mistakes are visible on the grid of medium resolution. Shifted samples and a wrong pixel
-    // width are visible only in single pixels. So these are measured in the central crop, which has
-    // full resolution.
+    // width are visible only at full resolution, so they are measured in the central crop.
     let level = if last.behaviour.is_shifted() || last.is_filtered() {
         judge.central_crop()
     } else {
@@ -126,9 +126,9 @@ fn attributed(judge: &Judge, last: &Candidate, is_explained: bool) -> Vec<NamedM
     let mut mistakes = Vec::new();
     let is_size = |mistake: &&Mistake| mistake.is_size() && last.has_parallel_rays();
     let (sizes, mut others): (Vec<&Mistake>, Vec<_>) = last.mistakes.iter().partition(is_size);
-    // Adds the mistakes to a correct program one by one, each time the one that leaves the least
-    // difference from the picture. A mistake may explain more once others are added, because they
-    // no longer hide it.
+    // Adds the mistakes to a correct program one by one. Each time, adds the mistake that leaves
+    // the least difference from the picture. The order matters, because one mistake may hide the
+    // effect of another.
     while !others.is_empty() {
         let with = |(at, mistake): (usize, &&Mistake)| {
             let mut after = before.with((*mistake).clone())?;
@@ -209,8 +209,8 @@ fn with_mistakes(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     } else {
         (Kind::Unknown, Vec::new(), mistakes)
     };
-    // Guesses do not explain the picture. So if only guesses are reported, the objects are compared
-    // with the correct scene.
+    // Named mistakes say which objects are wrong. Guesses do not explain the picture. So if only
+    // guesses are reported, the objects are compared with the correct scene.
     let known = if is_named { last } else { &correct };
     let (mut objects, is_background_right) = objects::judged(judge, known);
     for object in mistakes.iter().filter_map(|mistake| mistake.object) {
@@ -227,10 +227,10 @@ fn with_mistakes(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     }
 }
 
-/// Returns whether the mistakes in `named` are all wrong numbers that hardly move anything in the
+/// Returns whether all mistakes in `named` are wrong numbers that hardly move anything in the
 /// picture. Nobody types such numbers. More likely, the samples are not centred in their pixels,
-/// and the wrong numbers imitate this. `named` contains only mistakes that explain a part of the
-/// difference from the picture.
+/// and the wrong numbers have the same effect. Mistakes of `candidate` that are not in `named` are
+/// ignored.
 fn is_slight(scene: &Scene, candidate: &Candidate, named: &[NamedMistake]) -> bool {
     let is_named = |mistake: &&Mistake| {
         let mut named = named.iter();
@@ -248,8 +248,9 @@ fn is_slight(scene: &Scene, candidate: &Candidate, named: &[NamedMistake]) -> bo
         && objects.all(|object| objects::off(scene, &candidate.scene, object) < LEAST_DISPLACEMENT)
 }
 
-/// Returns whether the hypothesis has wrong numbers in so many fields of one object that they more
-/// likely imitate a wrong formula for this object.
+/// Returns whether at least [`IMPLAUSIBLE_FIELDS`] fields of one object are wrong in the
+/// hypothesis. More likely, the program has a wrong formula for this object, and the wrong fields
+/// happen to have the same effect.
 fn is_made_up(candidate: &Candidate) -> bool {
     let mistakes = candidate.mistakes.iter();
     let numbers = mistakes.filter(|mistake| matches!(mistake, Mistake::Numbers(..)));
@@ -260,17 +261,17 @@ fn is_made_up(candidate: &Candidate) -> bool {
         .any(|object| count(object) >= IMPLAUSIBLE_FIELDS)
 }
 
-/// Returns the variants of a mistake that explain the picture, too. The picture alone cannot tell
-/// which of them the program makes. Only rows of the table of mistakes have variants. Those that
-/// are visible only weakly inside areas of one colour, or only at edges, are left out.
+/// Returns other mistakes that also explain the picture, so that the picture alone cannot tell
+/// which one the program makes. They are other rows of the table of mistakes with the same
+/// identifier. Rows that are visible only weakly or only at edges are left out.
 fn equivalent_rows(judge: &Judge, candidate: &Candidate, mistake: &Mistake) -> Vec<Mistake> {
     let Mistake::Row(row, object) = mistake else {
         return Vec::new();
     };
     let rows = mistakes::ROWS.iter().chain(mistakes::OBJECT_ROWS);
-    // A program that multiplies light by a factor and a program that multiplies bytes by a factor
-    // can make almost the same JPEG. So each of these two mistakes is tried as a variant of the
-    // other, although their identifiers differ.
+    // A program that multiplies light by a factor and one that multiplies bytes by a factor can
+    // make almost the same JPEG. So each of these two mistakes is tried in place of the other,
+    // although their identifiers differ.
     let [gain, of_bytes] = ["not_divided", "bytes_scaled"];
     let is_alike = |id: &str| {
         id == row.id || [gain, of_bytes].contains(&id) && [gain, of_bytes].contains(&row.id)

@@ -1,7 +1,7 @@
-//! Finds the pixels without a sample, and removes them.
+//! Finds the pixels in which a program took no sample, and removes them from the picture.
 //!
-//! If samples are spread at random over the whole picture, some pixels get none. Such a pixel shows
-//! the background, or black in some programs, and says nothing about the scene.
+//! If a program spreads its samples at random over the whole picture, some pixels get none. Such a
+//! pixel shows the background, or black in some programs, and says nothing about the scene.
 
 use std::sync::Arc;
 
@@ -18,18 +18,18 @@ use crate::film::Film;
 /// to lack a sample.
 ///
 /// A pixel is suspected if it has the colour `empty` and the exact picture has another colour
-/// there. The suspicion is dropped in two cases. First, if suspects are neighbours more often than
-/// by chance. Second, if there are more suspects than expected: with n samples per pixel on
-/// average, a fraction e⁻ⁿ of the pixels has none. Here n is estimated from the noise of the other
-/// pixels.
+/// there. No pixel is replaced in two cases. In the first case, suspected pixels are neighbours
+/// more often than by chance. In the second case, there are more of them than expected. With n
+/// samples per pixel on average, a fraction e⁻ⁿ of the pixels should have none. The number n is
+/// estimated from the noise of the other pixels.
 pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Option<Film> {
     let width = film.width() as usize;
     let is_empty = |at: usize| is_near(film.pixels()[at], empty);
     let may_be_empty = |at: usize| !is_near(moments.mean[at].into(), empty);
     let is_flat = |at: usize| moments.variance[at].max_element() < FLAT;
-    // `Some(true)` for a pixel that seems to lack a sample, `Some(false)` for a pixel that has one.
-    // `None` if this cannot be seen: several colours meet in the pixel, or the pixel should show
-    // `empty`.
+    // State of each pixel: `Some(true)` if it seems to lack a sample, and `Some(false)` if it has
+    // one. `None` if this cannot be seen, because several colours meet in the pixel, or because it
+    // should show the colour `empty`.
     let states: Vec<Option<bool>> = (0..moments.mean.len())
         .map(|at| (is_flat(at) && may_be_empty(at)).then(|| is_empty(at)))
         .collect();
@@ -50,11 +50,11 @@ pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Op
         }
     }
     let both = share * share;
-    // Two neighbouring pixels form a pair. Pairs that share a pixel are not independent, and each
-    // pair shares a pixel with six others. So the number of pairs without a sample has a larger
-    // variance than a Poisson variable of the same mean. `more` is the quotient of this variance
-    // and the mean. The observed and the expected number of such pairs are both divided by it, so
-    // that the bound for a Poisson variable applies.
+    // Two neighbouring pixels form a pair. A pair is empty if both pixels lack a sample. Each pair
+    // shares a pixel with six others, so pairs are not independent. The number of empty pairs
+    // therefore has a larger variance than a Poisson variable of the same mean. `more` is this
+    // variance divided by the mean. The observed and the expected number are divided by it, so that
+    // the bound for Poisson variables applies.
     let more = 1.0 - both + 6.0 * share * (1.0 - share);
     if !is_chance(empty_pairs / more, pairs * both / more) {
         return None;
@@ -67,18 +67,18 @@ pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Op
     }
     let seen: Vec<DVec3> = without.pixels().iter().copied().map(DVec3::from).collect();
     let prediction = Prediction::new(&seen, width, Arc::clone(moments), Curve::Correct);
-    // `samples` is estimated from the noise. It is therefore the harmonic mean of the sample counts
-    // of all pixels that have samples. Their arithmetic mean is n/(1 − e⁻ⁿ), where n is the mean
-    // sample count of all pixels. A harmonic mean is at most the arithmetic one, so `samples` is
-    // less than n + 1. So the expected fraction of empty pixels, e⁻ⁿ, is less than e^(1 −
-    // `samples`).
+    // Let n be the mean number of samples of all pixels. The expected fraction of empty pixels,
+    // e⁻ⁿ, is less than e^(1 − `samples`), for the following reason. `samples` is estimated from
+    // the noise, so it is the harmonic mean of the sample counts of the pixels that have samples.
+    // It is at most their arithmetic mean, n/(1 − e⁻ⁿ), which is less than n + 1.
     let samples = prediction.score().samples?;
     let expected = count * libm::exp(1.0 - samples);
     is_chance(found, expected).then_some(without)
 }
 
-/// Returns whether `count` independent events may be chance if `mean` are expected. Uses Chernoff's
-/// bound for a Poisson variable X with the mean m: P(X ≥ k) ≤ e^(k − m) (m/k)^k for k > m.
+/// Returns whether `count` independent events may occur by chance if `mean` events are expected.
+/// Uses Chernoff's bound for a Poisson variable X with the mean m. The probability of k or more
+/// events, for k > m, is P(X ≥ k) ≤ e^(k − m) (m/k)^k.
 fn is_chance(count: f64, mean: f64) -> bool {
     count <= mean
         || count * libm::log(count / mean) - (count - mean) <= DEVIATIONS * DEVIATIONS / 2.0

@@ -1,4 +1,4 @@
-//! A comparison of two pictures and the verdict on one of them as JSON, for programs.
+//! Writes a comparison of two pictures, and the verdict on one of them, as JSON for programs.
 
 use serde_json::{Map, Value, json};
 
@@ -45,8 +45,8 @@ pub fn figures(
         .collect()
 }
 
-/// Rounds `steps`, a difference in steps of 8-bit sRGB, to 9 decimals. This removes rounding errors
-/// from decoding and encoding a byte.
+/// Rounds `steps`, a difference in steps of 8-bit sRGB, to 9 decimals. This removes the rounding
+/// errors that arise when a byte is decoded to light and encoded again.
 fn plain(steps: f64) -> f64 {
     (1e9 * steps).round() / 1e9
 }

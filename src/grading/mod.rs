@@ -7,8 +7,9 @@
 //! A hypothesis (`hypotheses`) is a program with mistakes. Its score (`scoring`) says how well the
 //! picture that it would render explains the given one. The search (`search`) looks for the
 //! hypothesis that explains the picture best with the fewest mistakes. Before the search,
-//! `plain_facts` and `empty_pixels` handle what is obvious. After it, `conclusion` makes the
-//! `verdict` on the picture, and `objects` judges each object. The messages come from `wording`.
+//! `plain_facts` reports what is obvious, such as an empty picture, and `empty_pixels` removes
+//! pixels that the program took no sample in. After the search, `conclusion` computes the `verdict`
+//! on the picture, and `objects` judges each object. The messages come from `wording`.
 
 mod conclusion;
 mod empty_pixels;
@@ -59,16 +60,16 @@ use crate::{
     tracer::World,
 };
 
-/// The exact picture of a part of a scene, for judging pictures of that part. It is computed once,
-/// even if the pictures of a whole class of students are judged.
+/// The exact picture of a scene, or of a rectangle of it, with which other pictures are compared.
+/// It is computed once, even if the pictures of a whole class of students are judged.
 pub struct Reference {
     /// The exact picture.
     pub exact: Exact,
-    /// Part of the scene's picture that can be judged.
+    /// Rectangle of the scene's picture that is judged.
     pub part: Area,
     scene: Scene,
     correct: Arc<Rendering>,
-    /// Rounding of the pictures that can be judged.
+    /// How the colours of the judged pictures are rounded, for example to bytes.
     rounding: Rounding,
     /// Work that was spent on the exact picture, in the units of [`Work`].
     work: f64,
@@ -76,10 +77,9 @@ pub struct Reference {
     effort: f64,
 }
 
-/// Number of bytes per pixel that the computation of the exact picture needs. They store seven
-/// colours of three numbers each. One colour is the exact mean. The moments of a pixel are three
-/// more: a mean, its variance, and the variance of a sample. While the moments are collected, they
-/// exist twice for a short time.
+/// Number of bytes per pixel that computing the exact picture needs: seven colours of three numbers
+/// each. One colour is the exact mean. The [`Moments`] of a pixel are three more: a mean, its
+/// variance, and the variance of a sample. While they are collected, two copies of them exist.
 const BYTES_A_PIXEL: u64 = 7 * size_of::<[f64; 3]>() as u64;
 
 impl fmt::Debug for Reference {
@@ -93,18 +93,18 @@ impl fmt::Debug for Reference {
 }
 
 impl Reference {
-    /// Computes the exact picture of a part of a scene, for judging pictures that are rounded in
-    /// some way.
+    /// Computes the exact picture of the rectangle `part` of a scene's picture. `rounding` says how
+    /// the pictures that will be judged are rounded.
     ///
     /// # Errors
     ///
-    /// Fails if it is cancelled, if the part is too large, or if the part lies outside of the
-    /// scene's picture.
+    /// Fails if `control` cancels it, or if `part` is too large or extends beyond the scene's
+    /// picture.
     ///
     /// # Panics
     ///
-    /// Panics if the scene was made in code instead of read from a file, and breaks a condition of
-    /// the language. [`Scene::check`] finds such scenes.
+    /// Panics if the scene breaks a condition of the language. Only a scene that was made in code,
+    /// instead of read from a file, can do so. [`Scene::check`] finds such scenes.
     pub fn new(
         scene: &Scene,
         part: Area,
@@ -140,13 +140,13 @@ impl Reference {
         })
     }
 
-    /// Returns whether the reference can judge a picture of this part with this rounding.
+    /// Returns whether the reference was computed for this part of the picture and this rounding.
     pub fn is_for(&self, part: Area, rounding: Rounding) -> bool {
         self.part == part && self.rounding == rounding
     }
 
-    /// Compares a picture with the exact one. A pixel may differ by `steps` 8-bit steps, in
-    /// addition to the error bound of the exact picture.
+    /// Compares a picture with the exact one. Pixels count as equal if they differ by at most
+    /// `steps` 8-bit steps plus the error bound of the exact picture.
     ///
     /// # Errors
     ///
@@ -155,8 +155,8 @@ impl Reference {
         film::compare(film, &self.exact.film, self.tolerance(steps))
     }
 
-    /// Returns the tolerance of a comparison: some 8-bit steps, plus the error bound of the exact
-    /// picture.
+    /// Returns the tolerance of a comparison: `steps` 8-bit steps, plus the error bound of the
+    /// exact picture.
     pub fn tolerance(&self, steps: f64) -> Tolerance<'_> {
         Tolerance {
             steps,
@@ -164,14 +164,14 @@ impl Reference {
         }
     }
 
-    /// Sets the factor by which the work allowed for each picture is multiplied.
+    /// Sets the factor by which the limit on the work for each judged picture is multiplied.
     #[must_use]
     pub fn with_effort(self, effort: f64) -> Self {
         Self { effort, ..self }
     }
 
-    /// Judges a picture. `comparison` is its comparison with the exact picture, which
-    /// [`compare`](Self::compare) returns. `jpeg` says how its file is coded, if it is a JPEG.
+    /// Judges a picture. `comparison` is the result of [`compare`](Self::compare) for this picture.
+    /// If the picture comes from a JPEG file, `jpeg` says how the file is coded.
     ///
     /// # Errors
     ///
@@ -179,7 +179,8 @@ impl Reference {
     ///
     /// # Panics
     ///
-    /// Panics if the picture or the comparison has another size than the exact picture.
+    /// Panics if the size of the picture or of the comparison differs from that of the exact
+    /// picture.
     pub fn judge(
         &self,
         picture: &Picture,
@@ -201,9 +202,10 @@ impl Reference {
         let Some(opacity) = &picture.opacity else {
             return self.judge_opaque(&picture.film, jpeg, cancel);
         };
-        // First, a transparent picture is judged as it appears on black. If it is wrong there, or
-        // if no pixel is opaque, its colours are judged as if every pixel were opaque. A picture
-        // whose alpha is 0 everywhere shows nothing, so its colours are not judged.
+        // A transparent picture is judged up to two times. First, it is judged as it appears on
+        // black. If it is wrong, or if no pixel is opaque, its colours are then judged as if every
+        // pixel were opaque. A picture whose alpha is 0 everywhere shows nothing, so its colours
+        // are not judged.
         let verdict = self.judge_opaque(&picture.film, jpeg, cancel)?;
         let is_right = matches!(verdict.kind, Kind::Right | Kind::Noise);
         if is_right && opacity.range[1] == 1.0 {
@@ -240,8 +242,8 @@ impl Reference {
             return Ok(verdict);
         }
         // If rows at the top or bottom have one colour, either the program never wrote them, or its
-        // camera sees something else there. They are reported as never written if the rest of the
-        // picture is right.
+        // camera sees something else there. The rows are reported as never written if the rest of
+        // the picture is right.
         if let Some((rest, fact)) = plain_facts::without_empty_rows(film, exact) {
             let rest = self.judge_full(&rest, jpeg, 0, cancel)?;
             if matches!(rest.kind, Kind::Right | Kind::Noise) {
@@ -251,9 +253,9 @@ impl Reference {
         self.judge_full(film, jpeg, MAX_MISTAKES, cancel)
     }
 
-    /// Judges a picture by a search for the mistakes that the program makes. The search finds at
-    /// most `most` mistakes, and a few more that are visible only at edges. Pixels without a sample
-    /// are ignored.
+    /// Judges a picture by a search for the mistakes of the program that made it. The search finds
+    /// at most `most` mistakes. In addition, it may find a few that are visible only at edges.
+    /// Pixels in which the program took no sample are ignored.
     fn judge_full(
         &self,
         film: &Film,
@@ -270,7 +272,7 @@ impl Reference {
         let work = Work::new(self.part.pixels(), self.work, self.effort, cancel);
         let judge = Judge::new(&self.scene, &self.correct, &film, jpeg, work);
         let found = forward_selection::run(&judge, most)?;
-        // The verdict must be computed completely, so it is not limited by the budget of work.
+        // The verdict must be complete, so the limit on work does not apply to it.
         let conclude = || conclusion::conclude(&judge, &film, found);
         let verdict = judge.work.without_limit(conclude);
         Ok(cancel::unless_set(cancel, verdict)?)

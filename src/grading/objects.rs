@@ -14,12 +14,13 @@ use crate::{
 };
 
 /// Displacement in the picture, in pixels, below which an object is treated as not moved. With a
-/// smaller value, an object would be reported as wrong although its error is hardly visible.
+/// smaller value, objects would be reported as wrong although their errors are hardly visible.
 const HALF_PIXEL: f64 = 0.5;
 
 /// Distance from a wrong object, in pixels, within which errors are attributed to it instead of its
-/// neighbours. With a smaller value, neighbours would be blamed for the edges that they share with
-/// the object. With a larger one, their own errors would be missed.
+/// neighbours. With a smaller value, a neighbour would be reported as wrong because of the edge
+/// that it shares with the wrong object. With a larger one, the neighbour's own errors would be
+/// missed.
 const BESIDE: usize = 2;
 
 /// The verdict on an object.
@@ -38,7 +39,7 @@ pub struct ObjectVerdict {
     pub off: f64,
 }
 
-/// Returns the verdicts on the objects of a scene if a picture shows the whole scene correctly.
+/// Returns the verdicts on a scene's objects for a picture that shows the whole scene correctly.
 pub fn right(scene: &Scene) -> Vec<ObjectVerdict> {
     let right = |index: usize| ObjectVerdict {
         index,
@@ -50,10 +51,12 @@ pub fn right(scene: &Scene) -> Vec<ObjectVerdict> {
     (0..scene.objects.len()).map(right).collect()
 }
 
-/// Judges all objects and the background, given the mistakes of a hypothesis.
+/// Judges all objects and the background, given a hypothesis about the program, i.e. its mistakes.
+/// The second result says whether the background is correct.
 ///
-/// An object is correct if the hypothesis leaves it unchanged and in its place. In addition, where
-/// the object is shown, the picture must agree with a correct rendering of the hypothesis's scene.
+/// An object is correct if it fulfils two conditions. In the hypothesis, the object is drawn, is
+/// not changed and does not move. And where the object is seen, the picture agrees with a correct
+/// rendering of the hypothesis's scene.
 pub fn judged(judge: &Judge, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool) {
     let scene = judge.scene;
     let is_drawn = &candidate.is_drawn;
@@ -86,8 +89,8 @@ pub fn judged(judge: &Judge, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool
     (objects, is_background_right)
 }
 
-/// Returns how far an object moves in the picture between two scenes, in pixels: the maximum over
-/// some of its points.
+/// Returns how far an object moves in the picture, in pixels, if the scene `from` is replaced by
+/// the scene `to`. The result is the greatest movement of some of the object's points.
 pub fn off(from: &Scene, to: &Scene, object: usize) -> f64 {
     let projections = [from, to].map(|scene| Projection::quick(&scene.camera, &scene.image));
     let size = projections[0].size;
@@ -100,17 +103,17 @@ pub fn off(from: &Scene, to: &Scene, object: usize) -> f64 {
     let moved = before.into_iter().zip(after).filter_map(|(before, after)| {
         let (before, after) = (projections[0].point(before)?, projections[1].point(after));
         let is_near = before.cmpge(-size).all() && before.cmple(2.0 * size).all();
-        // A point that is no longer ahead of the eye is treated as if it moved by the picture's
-        // diagonal.
+        // A point that is no longer ahead of the eye in the scene `to` is treated as if it moved by
+        // the picture's diagonal.
         let off = after.map_or(size.length(), |after| before.distance(after));
         is_near.then(|| off.min(size.length()))
     });
     moved.fold(0.0, f64::max)
 }
 
-/// Returns points from which the displacement of a shape is measured: the ends of a sphere's axes,
-/// or the corners of a triangle or box. For a checkerboard, they are the points `squares`, whose
-/// coordinates are in units of a square's side.
+/// Returns the points of a shape whose movement is measured: the ends of a sphere's axes, or the
+/// corners of a triangle or box. For a checkerboard, they are the points `squares`, converted from
+/// units of a square's side to metres.
 fn points(shape: &Shape, squares: &[DVec3]) -> Vec<DVec3> {
     match shape {
         Shape::Sphere(sphere) => {
@@ -127,14 +130,15 @@ fn points(shape: &Shape, squares: &[DVec3]) -> Vec<DVec3> {
     }
 }
 
-/// Returns points of a checkerboard that are spread over the picture, in units of a square's side.
+/// Returns points of a checkerboard that are spread evenly over the picture. Their coordinates are
+/// in units of a square's side.
 fn squares(board: &Checkerboard, projection: &Projection) -> Vec<DVec3> {
     let place = |at: i32| DVec2::new(f64::from(at % 5), f64::from(at / 5)) / 4.0;
     let crossing = |at| {
         let plane = DVec3::Y * board.y;
         let point = projection.on_plane(projection.size * place(at), plane, DVec3::Y)?;
-        // Beyond a depth of 100 squares, single squares are too small to be seen, so points farther
-        // away are left out.
+        // At a depth of more than 100 squares, single squares are too small to be seen, so points
+        // at such depths are left out.
         let is_seen = projection.depth(point) < 100.0 * board.square;
         is_seen.then_some(point / board.square)
     };

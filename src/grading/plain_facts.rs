@@ -1,5 +1,5 @@
-//! Facts that are obvious in a picture before any mistake is fitted: some values are not numbers,
-//! the picture is empty or noise, a part of it is empty, or it is transparent.
+//! Finds what is obviously wrong with a picture, before the search for mistakes: values that are
+//! not finite numbers, an empty or noisy picture, empty rows, or transparency.
 
 use glam::DVec3;
 
@@ -11,14 +11,14 @@ use super::{
 use crate::{area::Area, film::Film, scene::Scene};
 
 /// Ratio above which a picture is noise: the mean squared difference of neighbouring pixels,
-/// divided by the mean squared difference of two arbitrary pixels. In noise the ratio is 1. In a
-/// picture of a scene it is smaller, because neighbours are alike. The value leaves a margin for
-/// chance.
+/// divided by the mean squared difference of two arbitrary pixels. In noise, this ratio is 1 on
+/// average, and 0.8 leaves a margin for chance. In a picture of a scene, it is smaller, because
+/// neighbouring pixels are alike.
 const NOISE_RATIO: f64 = 0.8;
 
-/// Number of cells along the picture's longer side in a search for causes of an empty picture. One
-/// ray per cell tests whether a faulty program sees an object. With fewer cells, more small objects
-/// are missed; with more, the search takes longer.
+/// Number of cells along the picture's longer side that are tested to find out why a picture is
+/// empty. One ray per cell tests whether a program with a certain mistake sees an object. With
+/// fewer cells, more small objects are missed. With more, the test takes longer.
 const CELLS: u32 = 32;
 
 /// Maximum number of possible causes that are listed for an empty picture. Chosen to keep the
@@ -49,8 +49,8 @@ pub fn not_finite(film: &Film) -> Option<NamedMistake> {
     Some(fact("not_finite", message, help))
 }
 
-/// Finds out whether a picture has one colour or is noise although the exact picture is not.
-/// Returns this fact as a mistake, or `None` if neither is the case.
+/// Reports as a mistake that a picture has only one colour or is noise, unless the same is true of
+/// the exact picture. Returns `None` if there is nothing to report.
 pub fn empty_or_noise(film: &Film, exact: &Film, scene: &Scene) -> Option<NamedMistake> {
     let first = film.pixels()[0];
     if film.pixels().iter().all(|pixel| *pixel == first) {
@@ -83,7 +83,8 @@ pub fn empty_or_noise(film: &Film, exact: &Film, scene: &Scene) -> Option<NamedM
     })
 }
 
-/// Returns whether a picture is noise: neighbouring pixels differ as much as distant ones.
+/// Returns whether a picture is noise, i.e. whether neighbouring pixels differ about as much as
+/// distant ones.
 fn is_noise(film: &Film) -> bool {
     let width = film.width() as usize;
     let pixels = film.pixels();
@@ -99,7 +100,7 @@ fn is_noise(film: &Film) -> bool {
     far > 0.0 && below.min(beside) > 2.0 * NOISE_RATIO * far
 }
 
-/// Lists rows of the table of mistakes that would make the picture of a scene empty.
+/// Returns advice that lists mistakes by which the picture of this scene would be empty.
 fn causes(scene: &Scene) -> String {
     let part = Area::whole(scene.image.width, scene.image.height);
     let grid = Grid::new(&scene.image, part, CELLS);
@@ -121,9 +122,10 @@ fn causes(scene: &Scene) -> String {
     }
 }
 
-/// Finds rows at the top or bottom of a picture that have one colour, although they look different
-/// in the exact picture. Ignores a single such row, and rows that fill the picture. Returns the
-/// picture with these rows replaced by NaN, and a message. Returns `None` if no rows are found.
+/// Finds empty rows at the top or bottom of a picture: they all have one colour, although the exact
+/// picture shows something else there. A single row, and rows that fill the picture, do not count.
+/// Returns the picture with the empty rows replaced by NaN, and a message. Returns `None` if no
+/// empty rows are found.
 pub fn without_empty_rows(film: &Film, exact: &Film) -> Option<(Film, NamedMistake)> {
     let (width, height) = (film.width() as usize, film.height());
     let rows = |is_below: bool| {
@@ -131,9 +133,9 @@ pub fn without_empty_rows(film: &Film, exact: &Film) -> Option<(Film, NamedMista
         let light = film.row(at(0))[0];
         let is_empty = |y: &u32| film.row(at(*y)).iter().all(|pixel| *pixel == light);
         let count = (0..height).take_while(is_empty).count() as u32;
-        // A row that should have one colour may show the sky in a wrong colour, instead of being
-        // empty. In that case, the row's correct colour is usually nowhere in the picture. So the
-        // row is reported as empty only if that colour appears somewhere.
+        // A row that should have one colour, such as the sky's, may show a wrong colour instead of
+        // being empty. The row's correct colour is then usually nowhere in the picture. So the row
+        // is reported as empty only if its correct colour appears somewhere.
         let is_shown = |light| film.pixels().iter().any(|pixel| is_near(*pixel, light));
         let is_wrong = |y: &u32| {
             let own = exact.row(at(*y));
@@ -154,8 +156,8 @@ pub fn without_empty_rows(film: &Film, exact: &Film) -> Option<(Film, NamedMista
     Some((left, fact("rows_missing", message, help)))
 }
 
-/// Reports that a picture is not opaque. `least` and `most` are its least and its greatest alpha,
-/// from 0 to 1.
+/// Reports that a picture is not opaque. `least` and `most` are the least and the greatest alpha of
+/// its pixels, from 0 to 1.
 pub fn transparent([least, most]: [f64; 2]) -> NamedMistake {
     let help = "alpha is 255 in every pixel of an opaque picture, or the file has no alpha";
     let byte = |part: f64| (255.0 * part).round();

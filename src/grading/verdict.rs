@@ -46,10 +46,10 @@ pub struct NamedMistake {
     pub message: String,
     /// Advice on how to correct the mistake.
     pub help: String,
-    /// `--set` arguments that make the scene reproduce the mistake.
+    /// `--set` arguments by which a correct program reproduces the mistake.
     pub set: Vec<String>,
     /// Fraction of the squared difference between the picture and the exact one that the mistake
-    /// explains. Noise is subtracted from the difference first.
+    /// explains. Noise is subtracted from this difference first.
     pub explains: f64,
 }
 
@@ -64,12 +64,13 @@ pub struct Verdict {
     pub samples: Option<f64>,
     /// The mistakes that together explain the picture.
     pub mistakes: Vec<NamedMistake>,
-    /// The mistakes of the hypothesis that comes closest to the picture. Given only if no known
-    /// mistakes explain the picture, or only implausible ones do.
+    /// Mistakes that come closest to the picture without explaining it, or explain it but are
+    /// implausible. Empty if plausible mistakes explain the picture, or if no known mistakes come
+    /// close to it.
     pub guesses: Vec<NamedMistake>,
-    /// Fraction of the squared difference between the picture and the exact one that the guesses
-    /// do not explain. Differences that noise can explain are ignored. `None` if only noise is
-    /// left, or if there are no guesses.
+    /// Fraction of the squared difference between the picture and the exact one that the guesses do
+    /// not explain. Differences that noise can explain are ignored. `None` if the guesses leave
+    /// only noise, or if there are none.
     pub rest: Option<f64>,
     /// The verdict on each object.
     pub objects: Vec<ObjectVerdict>,
@@ -97,8 +98,8 @@ impl Verdict {
         }
     }
 
-    /// Adds an obvious fact before the mistakes or guesses. The verdict's kind becomes
-    /// [`Kind::Wrong`], unless it is [`Kind::Unknown`].
+    /// Adds an obvious fact, such as transparency, before all mistakes or guesses. The verdict's
+    /// kind becomes [`Kind::Wrong`], unless it is [`Kind::Unknown`].
     pub fn with_fact(mut self, fact: NamedMistake) -> Self {
         match self.kind {
             Kind::Unknown => self.guesses.insert(0, fact),
@@ -157,8 +158,8 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// Returns an estimated number of samples with two significant digits. The estimate is hardly more
-/// precise than that.
+/// Formats an estimated number of samples with two significant digits, because the estimate is
+/// hardly more precise.
 pub fn about(samples: f64) -> String {
     short(significant(samples, 2))
 }

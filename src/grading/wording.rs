@@ -124,7 +124,7 @@ impl Mistake {
     }
 }
 
-/// Returns a shift to the right and down, in pixels, in words.
+/// Describes a shift in words. `by` contains its parts to the right and down, in pixels.
 fn direction(by: [f64; 2]) -> String {
     let words = [["left", "right"], ["above", "below"]];
     let one = |i: usize| {

@@ -34,7 +34,7 @@ impl Default for SquareRule {
 }
 
 impl PartialEq for SquareRule {
-    /// Compares two rules by their values at points on all sides of the origin. Comparing the
+    /// Compares two rules by their results at 144 points around the origin. Comparing the
     /// functions' addresses is not enough, because a function may have several addresses.
     fn eq(&self, other: &Self) -> bool {
         let coordinates = || (-6..6).map(|i| 0.25 + 0.5 * f64::from(i));
@@ -45,9 +45,9 @@ impl PartialEq for SquareRule {
 
 /// Rounds a number down to an integer.
 ///
-/// `f64::floor` is a slow call on processors without an instruction for it, and each ray that meets
-/// a checkerboard rounds two numbers. Results beyond the range of an `i64` are wrong; squares so
-/// far away are indistinguishable anyway.
+/// Replaces `f64::floor`, which is a slow call on processors without an instruction for it. Each
+/// ray that meets a checkerboard rounds two numbers. Results beyond the range of an `i64` are
+/// wrong, but squares at such distances are too small to be seen.
 pub fn floor(x: f64) -> i64 {
     let towards_zero = x as i64;
     towards_zero.wrapping_sub(i64::from(towards_zero as f64 > x))
@@ -74,8 +74,8 @@ pub enum Rays {
     /// picture.
     RightAlone,
     /// Rays are parallel. The number is a distance from the eye, in metres. Objects at this
-    /// distance appear as large as in the correct picture, nearer ones too small and farther ones
-    /// too large.
+    /// distance have the correct size in the picture. Nearer objects are too small, and farther
+    /// ones too large.
     Parallel(f64),
     /// The projection is that of a fisheye lens: the angle between a ray and the view direction is
     /// proportional to the distance from the picture's middle.
@@ -88,9 +88,9 @@ pub enum Spheres {
     /// Intersections are computed by the correct formula.
     #[default]
     Correct,
-    /// Intersections are computed by the formula for ray directions of length 1, but the direction
-    /// vectors reach from the eye to the view plane. The number is the distance of the view plane
-    /// from the eye, in metres.
+    /// Intersections are computed by a formula that is correct only for ray directions of length 1,
+    /// but the direction vectors reach from the eye to the view plane. The number is the distance
+    /// of the view plane from the eye, in metres.
     UnitRays(f64),
     /// Only the nearer of the two intersections is tested. If it is behind the eye or clipped, the
     /// sphere is not seen.
@@ -152,15 +152,15 @@ pub struct Behaviour {
     pub clips_distances: bool,
     /// How the intersections of a ray with a sphere are computed.
     pub spheres: Spheres,
-    /// Half the side of the square to which a checkerboard is limited, in metres. The square is
-    /// centred at the origin. Infinity is correct.
+    /// Half the side of a checkerboard that is wrongly limited to a square, in metres. The square
+    /// is centred at the origin. Infinity is correct, because a checkerboard is a whole plane.
     pub board_reach: f64,
     /// Index of the axis perpendicular to a checkerboard; 1, the y axis, is correct.
     pub board_normal: usize,
     /// How the colour of a surface is shaded.
     pub shading: Shading,
-    /// Index of an object whose intersections with rays are computed wrongly, and the fault in this
-    /// computation. `None` is correct.
+    /// Index of an object that is intersected wrongly, and the fault in the intersection. `None` is
+    /// correct.
     pub hit: Option<(usize, HitFault)>,
 }
 
@@ -190,8 +190,8 @@ impl Behaviour {
         self == Self::default()
     }
 
-    /// Returns whether no object is seen outside the outline that it has in a correct picture.
-    /// Inside their outlines, objects may still hide each other wrongly or have wrong colours.
+    /// Returns whether every object is seen only inside the outline that it has in a correct
+    /// picture. Inside the outline, the object may still have wrong colours, or be hidden wrongly.
     pub fn is_in_place(self) -> bool {
         !self.is_shifted()
             && self.pixel == 1.0

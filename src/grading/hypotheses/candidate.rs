@@ -17,11 +17,12 @@ pub enum Mistake {
     /// A row of the table of mistakes. The number is the index of an object, if the row is about a
     /// single object.
     Row(&'static MistakeRow, Option<usize>),
-    /// A field of the scene has wrong numbers. The values are the field, and the numbers that the
-    /// program uses.
+    /// The program uses wrong numbers for a field of the scene. The values are the field and these
+    /// numbers.
     Numbers(Parameter, Vec<f64>),
-    /// The picture has an extra patch. The fields are its colour, in linear light, and its bounding
-    /// rectangle: first the least column and row, then the greatest column and row.
+    /// The picture has an extra patch, i.e. an area of one colour that is not in the scene. The
+    /// values are its colour, in linear light, and its bounding rectangle in pixels: the least
+    /// column and row, then the greatest.
     Patch([f64; 3], [[f64; 2]; 2]),
     /// Two objects of one colour each have exchanged their colours. The numbers are the objects'
     /// indices.
@@ -33,20 +34,20 @@ pub enum Mistake {
     Shift([f64; 2]),
 }
 
-/// A row of the table of mistakes (module `mistakes`).
+/// A row of the table of known mistakes (module `mistakes`).
 #[derive(Debug)]
 pub struct MistakeRow {
     /// Stable identifier, for programs. Variants of a mistake share it.
     pub id: &'static str,
     /// Where in the picture the mistake is visible.
     pub shows: Shows,
-    /// Message that says what is wrong. In a row about a single object, the message lacks the
-    /// object's name, which is put before it.
+    /// Message that says what is wrong. If the row is about a single object, the object's name is
+    /// put before the message.
     pub message: &'static str,
     /// Advice on how to correct the mistake.
     pub help: &'static str,
     /// Function that applies the mistake to a hypothesis. Its second argument is the object's
-    /// index, which is unused unless the row is about an object.
+    /// index. Rows that are not about an object ignore it.
     pub change: fn(&mut Candidate, usize),
 }
 
@@ -63,8 +64,9 @@ pub enum Shows {
     InAreas,
     /// The mistake is visible only at edges, where colours meet.
     AtEdges,
-    /// The mistake is visible both inside areas of one colour and at edges, but weakly. The search
-    /// for mistakes at edges tries it only if areas of one colour, too, differ from the prediction.
+    /// The mistake is weakly visible both inside areas of one colour and at edges. It is tried
+    /// together with the mistakes at edges, but only if areas of one colour differ from the
+    /// prediction.
     Everywhere,
 }
 
@@ -80,8 +82,8 @@ impl Mistake {
         }
     }
 
-    /// Returns the index of the object that the mistake is about. If the mistake is about several
-    /// objects of one block of the scene's file, returns the index of the first. Returns `None` if
+    /// Returns the index of the object that the mistake is about. If the mistake changes all
+    /// objects of a block of the scene's file, returns the index of the first. Returns `None` if
     /// the mistake is about no object, or about two objects whose colours are exchanged.
     pub fn object(&self) -> Option<usize> {
         match self {
@@ -94,16 +96,16 @@ impl Mistake {
         }
     }
 
-    /// Returns whether the mistake consists of wrong numbers for the camera's angle of view, or for
-    /// the distance or height of its view plane. These fields set how much the camera sees.
+    /// Returns whether the mistake is a wrong number in a field that sets how much the camera sees:
+    /// the angle of view, the distance of the view plane, or its height.
     pub fn is_size(&self) -> bool {
         const SIZES: [&str; 4] = ["d", "fov", "hfov", "view_height"];
         matches!(self, Self::Numbers(parameter, _)
             if parameter.owner == Owner::Camera && SIZES.contains(&parameter.fields[0]))
     }
 
-    /// Returns the number of parameters that describe the mistake. Each parameter adds to the cost
-    /// of a hypothesis.
+    /// Returns the number of parameters that describe the mistake. The more parameters a hypothesis
+    /// has, the better it must explain the picture to be chosen.
     pub fn parameter_count(&self) -> usize {
         match self {
             Self::Row(..) | Self::ColorsExchanged(..) => 1,
@@ -117,7 +119,8 @@ impl Mistake {
     }
 }
 
-/// A hypothesis about the program that made a picture: its differences from a correct program.
+/// A hypothesis about the program that made a picture: the mistakes that it makes, and their
+/// effects on the scene, on the traced rays and on the picture's light.
 #[derive(Clone, Debug)]
 pub struct Candidate {
     /// Scene that the program renders.
@@ -126,21 +129,22 @@ pub struct Candidate {
     pub is_drawn: Vec<bool>,
     /// How the program traces rays and places samples.
     pub behaviour: Behaviour,
-    /// Encoding curve that the program undoes before it averages colours.
+    /// Encoding curve that the program inverts to decode the scene's colours, before it averages
+    /// them.
     pub decoding: Curve,
-    /// Curve by which the program encodes the averaged colours.
+    /// Curve by which the program encodes averaged colours in the picture's file.
     pub curve: Curve,
     /// How the program arranges pixels in the picture.
     pub layout: Layout,
-    /// Changes that the program makes to the light of the traced picture, in the order in which it
-    /// makes them.
+    /// Changes that the program makes to the picture's light after tracing, in order of
+    /// application.
     pub effects: Vec<Effect>,
     /// Mistakes that turn a correct program into this one.
     pub mistakes: Vec<Mistake>,
 }
 
 impl Candidate {
-    /// Returns a program without mistakes.
+    /// Returns the hypothesis that the program has no mistakes.
     pub fn correct(scene: &Scene) -> Self {
         Self {
             scene: scene.clone(),
@@ -161,8 +165,8 @@ impl Candidate {
         mistakes.try_fold(Self::correct(scene), |candidate, one| candidate.with(one))
     }
 
-    /// Returns a correct program for the hypothesis's scene. Objects that the hypothesis does not
-    /// draw are not drawn either.
+    /// Returns the hypothesis of a program that renders the same scene without mistakes. Objects
+    /// that this hypothesis does not draw are not drawn either.
     pub fn drawn_correctly(&self) -> Self {
         Self {
             is_drawn: self.is_drawn.clone(),
@@ -171,8 +175,8 @@ impl Candidate {
     }
 
     /// Returns a copy of the hypothesis with one more mistake. Returns `None` if the mistake is
-    /// impossible in the scene. A row of the table of mistakes and an exchange of colours may
-    /// change nothing; in this case, also returns `None`.
+    /// impossible in the scene, or if it is a row of the table or an exchange of colours that
+    /// changes nothing.
     pub fn with(&self, mistake: Mistake) -> Option<Self> {
         let mut candidate = self.clone();
         match &mistake {
@@ -219,8 +223,8 @@ impl Candidate {
         Some(candidate)
     }
 
-    /// Iterates over the mistakes of the kind [`Mistake::Numbers`]. Each item is a field of the
-    /// scene and its wrong numbers.
+    /// Iterates over the mistakes that are wrong numbers ([`Mistake::Numbers`]). Each item is a
+    /// field of the scene and the wrong numbers of the field.
     pub fn numeric(&self) -> impl Iterator<Item = (&Parameter, &[f64])> {
         self.mistakes.iter().filter_map(|mistake| match mistake {
             Mistake::Numbers(parameter, numbers) => Some((parameter, &numbers[..])),
@@ -235,8 +239,8 @@ impl Candidate {
             .collect()
     }
 
-    /// Returns for each wrong number, in the order of [`Self::numbers`], the change that moves the
-    /// picture by about `pixels` pixels.
+    /// Returns for each wrong number, in the order of [`Self::numbers`], by how much it must be
+    /// changed to move the picture by about `pixels` pixels.
     pub fn steps(&self, pixels: f64) -> Vec<f64> {
         let steps = |(parameter, _): (&Parameter, _)| parameter.steps(&self.scene, pixels);
         self.numeric().flat_map(steps).collect()
@@ -257,9 +261,9 @@ impl Candidate {
         Self::of(scene, mistakes)
     }
 
-    /// Returns whether the program keeps the mean light of an area. This holds if the program
-    /// encodes light correctly, and otherwise only mixes channels, exchanges channels, blurs or
-    /// sharpens.
+    /// Returns whether the program keeps the mean light of an area, apart from mixing or exchanging
+    /// channels. It does so if it encodes light correctly, and if it changes light at most by
+    /// mixing or exchanging channels, blurring or sharpening.
     pub fn keeps_light(&self) -> bool {
         let mut effects = self.effects.iter();
         let keeps = |effect: &Effect| {
@@ -286,9 +290,9 @@ impl Candidate {
         self.behaviour.is_correct() && !self.is_filtered()
     }
 
-    /// Returns whether both hypotheses have the same mistakes, apart from the mistakes' numbers.
-    /// Also returns `true` if their mistakes differ, but lead to equal programs
-    /// ([`Self::shows_as`]), and neither program has `effects` on light.
+    /// Returns whether both hypotheses have the same mistakes, except for the mistakes' numbers.
+    /// Also returns `true` if different mistakes lead to equal programs ([`Self::shows_as`])
+    /// without `effects` on light.
     pub fn is_same_kind(&self, other: &Self) -> bool {
         if self.effects.is_empty() && other.effects.is_empty() && self.shows_as(other) {
             return true;

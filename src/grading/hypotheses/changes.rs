@@ -1,4 +1,4 @@
-//! The functions by which rows of the table of mistakes change a hypothesis about a program.
+//! Functions that apply the mistakes of the table in `mistakes` to a hypothesis about a program.
 
 use glam::DVec3;
 
@@ -14,7 +14,8 @@ use crate::{
     scene::{Cuboid, Lens, Shape, TriangleOutline, View},
 };
 
-/// Makes the picture gray: each channel becomes the weighted mean of the sRGB-encoded channels.
+/// Makes the picture gray: each channel becomes the same weighted mean of the sRGB-encoded
+/// channels.
 pub fn gray_of_encoded(c: &mut Candidate, weights: [f64; 3]) {
     c.effects.extend([
         Effect::PerChannel(linear_to_srgb),
@@ -23,8 +24,8 @@ pub fn gray_of_encoded(c: &mut Candidate, weights: [f64; 3]) {
     ]);
 }
 
-/// Applies a function to the light of each channel, unless the hypothesis has another effect on
-/// light already.
+/// Lets the program apply a function to the light of each channel. Does nothing if the program has
+/// another effect on light already.
 pub fn map_channels(c: &mut Candidate, curve: fn(f64) -> f64) {
     if c.effects.is_empty() {
         c.effects.push(Effect::PerChannel(curve));
@@ -61,8 +62,8 @@ pub fn shift(c: &mut Candidate, by: [f64; 2]) {
     c.behaviour.offset = c.layout.source_direction(by);
 }
 
-/// Widens the spacing of the samples, as if the program divided the window into too few pixels: one
-/// column and one row less than the picture has.
+/// Widens the spacing of the samples. The program then seems to divide the window into one column
+/// and one row too few, so that its pixels are too large.
 pub fn spread_by_one_less(c: &mut Candidate) {
     c.behaviour.spread = sides(c).map(|side| side / (side - 1.0).max(1.0));
 }
@@ -87,8 +88,9 @@ pub fn sides(c: &Candidate) -> [f64; 2] {
     [c.scene.image.width, c.scene.image.height].map(f64::from)
 }
 
-/// Sets the ratio of the width to the height of the window, i.e. of the rectangle that the camera
-/// sees. Does nothing if the ratio is wrong already, or if `aspect` is the correct ratio.
+/// Sets the ratio of the width to the height of the window, i.e. of the rectangle in space that the
+/// picture shows. Does nothing if an earlier mistake has set the ratio, or if `aspect` is the
+/// correct ratio.
 pub fn set_aspect(c: &mut Candidate, aspect: f64) {
     let [width, height] = sides(c);
     let by = aspect * height / width;
@@ -97,15 +99,15 @@ pub fn set_aspect(c: &mut Candidate, aspect: f64) {
     }
 }
 
-/// Sets a fault in how spheres are intersected, if the scene has a sphere.
+/// Sets a fault in how rays are intersected with spheres. Does nothing if the scene has no sphere.
 pub fn set_sphere_fault(c: &mut Candidate, spheres: Spheres) {
     if shapes(c).any(|shape| matches!(shape, Shape::Sphere(_))) {
         c.behaviour.spheres = spheres;
     }
 }
 
-/// Sets a fault in how an object is intersected, if its shape can have this fault and no object has
-/// a fault yet.
+/// Sets a fault in how rays are intersected with an object. Does nothing if the object's shape
+/// cannot have this fault, or if some object has a fault already.
 pub fn set_hit_fault(c: &mut Candidate, object: usize, hit: HitFault) {
     let of_box = matches!(hit, HitFault::WithoutAxis(_));
     let kind = if of_box { "box" } else { "triangle" };
@@ -114,16 +116,15 @@ pub fn set_hit_fault(c: &mut Candidate, object: usize, hit: HitFault) {
     }
 }
 
-/// Gives the faulty program a wrong curve by which light is encoded, unless an earlier mistake has
-/// given it one.
+/// Lets the program encode light by a wrong curve, unless an earlier mistake has set a wrong curve.
 pub fn set_encoding(c: &mut Candidate, curve: Curve) {
     if c.curve == Curve::Correct {
         c.curve = curve;
     }
 }
 
-/// Gives the faulty program one wrong curve both for decoding colours and for encoding their
-/// average, unless an earlier mistake has given it a wrong encoding.
+/// Lets the program decode colours and encode their average by the same wrong curve, unless an
+/// earlier mistake has set a wrong curve for encoding.
 pub fn set_averaging(c: &mut Candidate, curve: Curve) {
     if c.curve == Curve::Correct {
         (c.decoding, c.curve) = (curve, curve);
@@ -136,16 +137,15 @@ pub fn set_order(c: &mut Candidate, visible: SeenSurface) {
     }
 }
 
-/// Gives the faulty program a wrong rule for which surface is seen, unless an earlier mistake has
-/// given it one.
+/// Sets a wrong rule for which surface is seen, unless an earlier mistake has set one.
 pub fn set_seen_surface(c: &mut Candidate, visible: SeenSurface) {
     if c.behaviour.visible == SeenSurface::Nearest {
         c.behaviour.visible = visible;
     }
 }
 
-/// Sets the rule for the colours of a checkerboard's squares, if a board is drawn and its rule is
-/// not wrong already.
+/// Sets a wrong rule for the colours of a checkerboard's squares. Does nothing if no board is
+/// drawn, or if an earlier mistake has set a wrong rule.
 pub fn set_square_rule(c: &mut Candidate, is_first: fn(f64, f64) -> bool) {
     if has_board(c) && c.behaviour.square_rule == SquareRule::default() {
         c.behaviour.square_rule = SquareRule(is_first);
@@ -170,7 +170,7 @@ pub fn exchange_sides(c: &mut Candidate) {
 }
 
 /// Multiplies the distance of the view plane from the eye by `by`. If the scene gives a field of
-/// view instead of the distance, the angle is changed to the same effect.
+/// view instead of the distance, changes the angle so that the picture is the same.
 pub fn lengthen(c: &mut Candidate, by: f64) {
     match &mut c.scene.camera.lens {
         Lens::Distance(d) => *d *= by,
@@ -189,9 +189,9 @@ pub fn twice_arctan(tangent: f64) -> Angle {
 }
 
 /// Shows the scene larger, as if the program did not divide the camera's right vector by its
-/// length. That length is the sine of the angle between the up vector and the view direction.
-/// Making the window smaller by this factor has the same effect as increasing the distance of the
-/// view plane.
+/// length, the sine of the angle between the up vector and the view direction. The window then
+/// shrinks by this factor. Dividing the distance of the view plane by the factor has the same
+/// effect.
 pub fn divide_by_sine_of_up(c: &mut Candidate) {
     let (from, to) = c.scene.camera.view.ends(c.scene.camera.eye);
     let [up, ahead] = [c.scene.camera.up, to - from].map(DVec3::normalize_or_zero);
@@ -223,10 +223,9 @@ pub fn exchange_faces(c: &mut Candidate, object: usize, order: [usize; 3]) {
     }
 }
 
-/// Moves a triangle by the vector from `point` to its centroid. So the triangle looks as if the
-/// program placed `point`, instead of the centroid, at the position given in the scene. `point` is
-/// a function of the vertices. Does nothing unless the scene describes the triangle by its
-/// centroid.
+/// Moves a triangle as if the program placed the wrong point of it at the position that the scene
+/// gives for the centroid. `point` computes the wrong point from the vertices. Does nothing unless
+/// the scene describes the triangle by its centroid.
 pub fn anchor(c: &mut Candidate, object: usize, point: fn([DVec3; 3]) -> DVec3) {
     if let Some(Shape::Triangle(triangle)) = shapes(c).nth(object) {
         let point = point(vertices(&triangle.outline));

@@ -1,4 +1,5 @@
-//! What a program may do to light: encode it by another curve, mix its channels, or change pixels.
+//! What a program may do to the light of its picture: encode it by a wrong curve, mix its channels,
+//! or change pixels.
 
 use std::{
     collections::BTreeMap,
@@ -10,8 +11,8 @@ use crate::{
     lock::lock,
 };
 
-/// Difference between neighbouring values of 8-bit sRGB, if 1 is white. Files with more bits are
-/// treated as if they had 8, because nobody sees smaller differences.
+/// Difference between neighbouring values of 8-bit sRGB, on a scale where 1 is white. Files with
+/// more bits are treated as if they had 8, because nobody sees smaller differences.
 pub const STEP: f64 = 1.0 / 255.0;
 
 /// Curve by which a program encodes light in a file.
@@ -19,7 +20,8 @@ pub const STEP: f64 = 1.0 / 255.0;
 pub enum Curve {
     /// The sRGB curve, which is correct.
     Correct,
-    /// No encoding: linear light is written to the file. Viewers take it for sRGB and decode it.
+    /// No encoding: linear light is written to the file. Viewers decode it as sRGB, so it looks too
+    /// dark.
     Missing,
     /// The sRGB curve, applied twice.
     Twice,
@@ -41,7 +43,9 @@ impl Curve {
     /// Number of curves.
     pub const COUNT: usize = Self::ALL.len();
 
-    /// Returns the light that a program encoded by the curve, given the light that a viewer sees.
+    /// Returns the light that the program computed, given the light `seen` that a viewer of its
+    /// file sees. The program encoded its light by this curve, and the viewer decodes the file as
+    /// sRGB.
     pub fn light(self, seen: f64) -> f64 {
         match self {
             Self::Correct => seen,
@@ -55,7 +59,9 @@ impl Curve {
         }
     }
 
-    /// Returns the light that a viewer sees, given the light that a program encoded by the curve.
+    /// Returns the light that a viewer of the program's file sees, given the light that the program
+    /// computed. The program encodes its light by this curve, and the viewer decodes the file as
+    /// sRGB.
     pub fn seen(self, light: f64) -> f64 {
         let light = light.max(0.0);
         match self {
@@ -67,8 +73,8 @@ impl Curve {
         }
     }
 
-    /// Returns the difference in light between neighbouring 8-bit values near `light`, if the curve
-    /// encodes light.
+    /// Returns the difference in light between neighbouring 8-bit values near `light`, if light is
+    /// encoded by this curve.
     pub fn step(self, light: f64) -> f64 {
         let at = (light.clamp(0.0, 1.0) * LIGHTS as f64).round() as usize;
         self.table()[at][0]
@@ -97,8 +103,9 @@ impl Curve {
     }
 }
 
-/// Number of intervals in a table of a function of light. With 4096 intervals, tests show that all
-/// curves are accurate to a thousandth of white, and sRGB to a hundredth of an 8-bit step.
+/// Number of intervals in a table of a function of light. With 4096 intervals, all interpolated
+/// curves are accurate to a thousandth of white, and sRGB to a hundredth of an 8-bit step. Tests
+/// check this.
 const LIGHTS: usize = 4096;
 
 /// Interpolates a function of light from 0 to 1 linearly in a table. `value(i)` is the function's
@@ -112,7 +119,8 @@ fn interpolated(light: f64, value: impl Fn(usize) -> f64) -> f64 {
 
 /// Encodes light from 0 to 1 as sRGB from 0 to 1, accurate to a hundredth of an 8-bit step.
 pub fn encoded_quickly(light: f64) -> f64 {
-    // A viewer decodes once. So light that was encoded twice appears as its sRGB encoding.
+    // Light that was encoded twice is decoded only once by a viewer. So the viewer sees the sRGB
+    // encoding of the light.
     Curve::Twice.seen_quickly(light)
 }
 
@@ -120,7 +128,8 @@ pub fn encoded_quickly(light: f64) -> f64 {
 pub struct Tabulated(Arc<[f64]>);
 
 impl Tabulated {
-    /// Tabulates a function. Its table is computed once and then shared.
+    /// Tabulates a function. The table is computed at the first call for this function, and then
+    /// shared.
     pub fn new(curve: fn(f64) -> f64) -> Self {
         static TABLES: Mutex<BTreeMap<usize, Arc<[f64]>>> = Mutex::new(BTreeMap::new());
         let mut tables = lock(&TABLES);
@@ -151,15 +160,16 @@ pub enum Effect {
     Gray([f64; 3]),
     /// A function is applied to each channel.
     PerChannel(fn(f64) -> f64),
-    /// Each channel is multiplied by the factor that fits the picture best. The first function is
-    /// applied before the multiplication, the second after it.
+    /// Each channel is multiplied by one factor, which is fitted to the picture. The first function
+    /// is applied before the multiplication, the second after it.
     Gain([fn(f64) -> f64; 2]),
     /// Channels are truncated to bytes instead of rounded.
     CutOff,
-    /// The picture is sharpened: the difference of a pixel from the mean of the 3 × 3 pixels around
-    /// it is added to the pixel.
+    /// The sRGB-encoded picture is sharpened: the difference of a pixel from the mean of the 3 × 3
+    /// pixels around it is added to the pixel.
     Sharpened,
-    /// The picture is blurred, as if its pixels had this width, in pixels.
+    /// The picture is blurred, as if each pixel averaged light over a square of this width, in
+    /// pixels.
     Blur(f64),
     /// The picture has an area of one colour that is not in the scene.
     Patch {

@@ -66,9 +66,9 @@ const fn row(
     }
 }
 
-/// Expands to one row of the table of mistakes. Used for families of rows that differ only in a
-/// part of the message and in a number or function. The first argument names the family. The other
-/// arguments are the parts that differ.
+/// Expands to a row of the table of mistakes. Rows of one family differ only in a part of the
+/// message and in a number or function. The first argument names the family, and the others are the
+/// differing parts.
 #[rustfmt::skip]
 macro_rules! family {
     (window $window:literal, $aspect:expr) => { row("aspect", InAreas, concat!("the picture is stretched: its window is ", $window, ", though the picture is not"), WINDOW, |c, _| set_aspect(c, $aspect)) };
@@ -212,7 +212,7 @@ pub const ROWS: &[MistakeRow] = &[
     row("eye_lookat_exchanged", InAreas, "eye and lookat are exchanged", "w = (eye − lookat)/|eye − lookat|", |c, _| if let View::Lookat(point) = &mut c.scene.camera.view { swap(point, &mut c.scene.camera.eye) }),
     row("eye_not_subtracted", InAreas, "lookat is taken for the view direction: the eye is not subtracted", "w = (eye − lookat)/|eye − lookat|", |c, _| if let View::Lookat(point) = c.scene.camera.view && point != DVec3::ZERO { c.scene.camera.view = View::Direction(point) }),
     row("near_far_distance", InAreas, "near and far are compared with distances from the eye, not with depths", CLIPPED, |c, _| c.behaviour.clips_distances = c.scene.camera.near > 0.0 || c.scene.camera.far.is_some()),
-    // Adding zero turns a coordinate −0 into 0, so that `-0` is not printed.
+    // Adding zero turns coordinates of −0 into 0, so that messages do not contain `-0`.
     row("up_negated", InAreas, "up has the wrong sign, or u is w × up: the picture is turned by 180 degrees", UP, |c, _| c.scene.camera.up = -c.scene.camera.up + DVec3::ZERO),
     row("up_ignored", InAreas, "up is ignored: (0, 1, 0) is taken for it", UP, |c, _| c.scene.camera.up = DVec3::Y),
     row("up_ignored", InAreas, "z is taken for up", UP, |c, _| c.scene.camera.up = DVec3::Z),

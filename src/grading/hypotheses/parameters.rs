@@ -23,7 +23,7 @@ pub enum Owner {
     /// The block `camera` of the scene.
     Camera,
     /// An object, given by its index. If a block of the scene's file describes several objects, the
-    /// first of them stands for all.
+    /// first of them represents all.
     Object(usize),
 }
 
@@ -37,8 +37,8 @@ pub struct Parameter {
     pub fields: Vec<&'static str>,
 }
 
-/// Distance of a far plane that cuts off nothing, in metres. If a scene has no far plane, this
-/// distance is used, so that a fit has a number to change. Any value far beyond all objects works.
+/// Distance of a far plane that cuts off nothing, in metres. It is used for scenes without a far
+/// plane, because the fit needs a number to change. Any value far beyond all objects works.
 pub const NO_FAR: f64 = 1e9;
 
 /// Returns the fields that can be fitted to a picture. The field `up` is left out, because it turns
@@ -47,7 +47,7 @@ pub const NO_FAR: f64 = 1e9;
 pub fn fittable(scene: &Scene) -> Vec<Parameter> {
     let mut fitted = all(scene);
     fitted.retain(|parameter| !matches!(parameter.fields[0], "up" | "view_height"));
-    // A single corner of a box may be wrong, so each corner can be fitted, too.
+    // In a wrong box, only one corner may be wrong. So each corner can be fitted, too.
     let mut corners = fitted.clone();
     corners.retain(|parameter| parameter.fields == ["size"]);
     let of = |it: Parameter| ["min", "max"].map(|corner| Parameter::new(it.owner, &[corner]));
@@ -66,8 +66,8 @@ fn all(scene: &Scene) -> Vec<Parameter> {
     let mut found: Vec<Parameter> = owners
         .flat_map(|owner| {
             let fields = schema::block(owner.kind(scene)).map_or(&[][..], |block| block.fields);
-            // A box is described by its center and size, even if the file gives its corners. So the
-            // fields of the corners, `min` and `max`, are left out.
+            // A box has values for its center and size as well as for its corners, `min` and `max`.
+            // The corners are left out, so that each box is described only once.
             let is_used = move |field: &&Field| {
                 let is_corner = matches!(field.name, "min" | "max");
                 !is_corner && owner.part(scene).value(field.name).is_some()
@@ -82,7 +82,7 @@ fn all(scene: &Scene) -> Vec<Parameter> {
     found
 }
 
-/// Returns the fields in which two scenes differ.
+/// Returns the fields of the scene `to` whose values differ from those in the scene `from`.
 pub fn changed(from: &Scene, to: &Scene) -> Vec<Parameter> {
     let mut changed = all(to);
     changed.retain(|one| one.fields.len() == 1 && one.values(from) != one.values(to));
@@ -94,15 +94,15 @@ pub fn changed(from: &Scene, to: &Scene) -> Vec<Parameter> {
 pub fn arguments(from: &Scene, to: &Scene) -> Vec<String> {
     let mut changed = changed(from, to);
     for parameter in &mut changed {
-        // Setting only `center` or only `size` would remove the box's corners and leave the other
-        // field at its default, so both are set.
+        // If only `center` or only `size` were set, the box's corners would be removed, and the
+        // other field would have its default. So both fields are set.
         if parameter.owner.kind(to) == "box" && matches!(parameter.fields[0], "center" | "size") {
             parameter.fields = vec!["center", "size"];
         }
     }
     changed.dedup();
     let arguments = changed.iter().flat_map(|parameter| parameter.arguments(to));
-    // No argument removes the far plane, so it is moved beyond all objects.
+    // No argument can remove a far plane, so the far plane is moved beyond all objects.
     let is_unlimited = from.camera.far.is_some() && to.camera.far.is_none();
     let far = is_unlimited.then(|| "camera.far=1e9".to_owned());
     arguments.chain(far).collect()
@@ -156,9 +156,9 @@ impl Parameter {
         Self { owner, fields }
     }
 
-    /// Returns the name of the object, or other part of the scene, to which the fields belong. If
-    /// the object's block in the file describes several objects, mentions the others, too. The name
-    /// is used in messages.
+    /// Returns the name of the image, the camera or the object to which the fields belong, for
+    /// messages. If the object's block in the file describes several objects, the name mentions the
+    /// others, too.
     pub fn owner_name(&self, scene: &Scene) -> String {
         let name = self.owner.name(scene);
         if self.owner.others(scene).is_empty() {
@@ -199,8 +199,8 @@ impl Parameter {
         self.values(scene).into_iter().flat_map(numbers).collect()
     }
 
-    /// Returns a scene in which the parameter has other numbers. Returns `None` if they are
-    /// impossible. Other objects of the same block are changed by the same amount.
+    /// Returns a copy of the scene in which the parameter has the given numbers. Returns `None` if
+    /// the numbers are impossible. Other objects of the same block are changed by the same amounts.
     pub fn put(&self, scene: &Scene, numbers: &[f64]) -> Option<Scene> {
         let mut changed = self.put_one(scene.clone(), numbers)?;
         let before = self.numbers(scene);
@@ -291,9 +291,10 @@ impl Parameter {
             .collect()
     }
 
-    /// Returns for each number the change that moves the picture by about `pixels` pixels. A change
-    /// of colour moves nothing, so the result for each colour channel is 8 or −8, on a scale from 0
-    /// to 255. The sign is chosen so that the changed channel stays in this range.
+    /// Returns for each number by how much it must be changed to move the picture by about `pixels`
+    /// pixels. A change of colour moves nothing, so the result for a colour channel is always 8 or
+    /// −8, on a scale from 0 to 255. The sign is chosen so that the changed channel stays in this
+    /// range.
     pub fn steps(&self, scene: &Scene, pixels: f64) -> Vec<f64> {
         if self.is_color() {
             return self.numbers(scene).into_iter().map(inward).collect();
@@ -308,8 +309,8 @@ impl Parameter {
             Owner::Object(index) => pixel_of(&scene.objects[index]).unwrap_or(0.0),
             _ => match scene.camera.view {
                 View::Lookat(point) => pixel_at(point),
-                // If the camera looks along a direction, no point is given at which to compute the
-                // width of a pixel. So the nearest object is used.
+                // If the camera looks along a direction, the scene gives no point at which a
+                // pixel's width can be computed. So the nearest object's center is used.
                 View::Direction(_) => {
                     let pixels = scene.objects.iter().filter_map(pixel_of);
                     pixels.reduce(f64::min).unwrap_or(projection.pitch)

@@ -1,12 +1,12 @@
 //! Tests whether the edges of a picture lie elsewhere than predicted, or whether its pixels have
 //! another width.
 //!
-//! To first order, a displaced picture differs from the original by its gradient times the
-//! displacement. The displacement of an object is fitted by least squares, as an affine function of
-//! the place in the picture. Such a function describes a wrong position, size or rotation of the
-//! object, or a wrong camera. If there is only sampling noise, the squared length of the fitted
-//! displacement, in standard deviations, has a χ² distribution with six degrees of freedom. So a
-//! large value is not chance.
+//! To first order, a displaced picture differs from the original by the displacement times the
+//! picture's gradient. The displacement of an object is fitted by least squares, as an affine
+//! function of the position in the picture. An affine function can describe a wrong position, size
+//! or rotation of the object, or a wrong camera. If there is only sampling noise, the squared
+//! length of the fitted displacement, in standard deviations, has a χ² distribution with six
+//! degrees of freedom. So a large value is not chance.
 
 use glam::DVec3;
 
@@ -17,56 +17,57 @@ use super::{linear_system::solve, prediction::Prediction};
 /// exceeds 50 with a probability below 10⁻⁸.
 const CHANCE: f64 = 50.0;
 
-/// Maximum displacement of edges, in pixels, that is attributed to the choice of samples if each
-/// pixel has one sample. For n samples per pixel, it is divided by n. A correct program may use the
-/// same sample positions in all pixels. The mean of these positions may then differ from the
-/// pixel's middle, by 1/(2n) for a Hammersley set. The value is greater than 1/2 because n is
-/// estimated from noise, and the estimate is too large for such a program.
+/// Maximum displacement of edges, in pixels, that a correct program may cause if each pixel has one
+/// sample. For n samples per pixel, it is divided by n. If a correct program uses the same sample
+/// positions in all pixels, their mean may differ from the pixel's middle, for example by 1/(2n)
+/// for a Hammersley set. The value is greater than 1/2 because n is estimated from noise, and is
+/// overestimated for such a program.
 const OFF_MIDDLE: f64 = 0.75;
-/// Maximum displacement of edges, in pixels, that is attributed to the choice of samples, however
-/// few samples there are. With a larger limit, mistakes in pictures with few samples would be
-/// overlooked.
+/// Maximum displacement of edges, in pixels, that a correct program may cause by its sample
+/// positions, even with very few samples. With a larger limit, mistakes in pictures with few
+/// samples would be overlooked.
 const MOST_OFF_MIDDLE: f64 = 0.15;
 
 /// Number of coefficients of an affine displacement: a constant and the slopes in x and y, for each
 /// of the two directions.
 const TERMS: usize = 6;
 
-/// Number of standard deviations from 0 beyond which an estimated change of the pixel width is not
-/// chance. Chosen by trial.
+/// Threshold of an estimated change of the pixel width, in standard deviations. A greater change is
+/// not chance. Chosen by trial.
 const SURE: f64 = 8.0;
 
-/// Greatest squared width of a pixel, in squared pixels, that is treated as correct in a picture
-/// without noise. The correct value is 1. With a smaller margin, errors of the estimate would be
-/// reported; with a larger one, slight blurs would be overlooked.
+/// Greatest squared pixel width, in squared pixels, that is treated as correct in a picture without
+/// noise. The correct value is 1. With a smaller limit, errors of the estimate would be reported as
+/// mistakes. With a larger one, slight blurs would be overlooked.
 const WIDE: f64 = 1.4;
 /// Amount, in squared pixels, that is added to [`WIDE`] if each pixel has one sample. For n samples
-/// per pixel, it is divided by n. If all pixels use the same few sample positions, these may lie
-/// farther from the pixel's middle than its points do on average. A correct picture is then less
-/// sharp. With a smaller amount, such pictures would be reported as blurred; with a larger one,
-/// blurred pictures with few samples would be overlooked.
+/// per pixel, it is divided by n. The few sample positions may lie too far from the pixel's middle.
+/// If all pixels share them, even a correct picture is less sharp. With a smaller amount, such
+/// pictures would be reported as blurred. With a larger one, blurred pictures with few samples
+/// would be overlooked.
 const WIDER: f64 = 3.0;
-/// Amount, in squared pixels, by which the squared width of a pixel may be below the correct value,
-/// 1, in a picture without noise. With a larger amount, pixels that are slightly too narrow would
-/// be overlooked.
+/// Amount, in squared pixels, by which the squared pixel width may be below the correct value, 1,
+/// in a picture without noise. With a larger amount, pixels that are slightly too narrow would be
+/// overlooked.
 const NARROW: f64 = 0.25;
 /// Amount, in squared pixels, that is added to [`NARROW`] if each pixel has one sample. For n
-/// samples per pixel, it is divided by n. If all pixels use the same few sample positions, these
-/// may lie closer to the pixel's middle than its points do on average. A correct picture is then
-/// sharper. With a smaller amount, such pictures would be reported as wrong; with a larger one,
-/// narrow pixels in pictures with few samples would be overlooked.
+/// samples per pixel, it is divided by n. The few sample positions may lie too close to the pixel's
+/// middle. If all pixels share them, even a correct picture is too sharp. With a smaller amount,
+/// such pictures would be reported as wrong. With a larger one, narrow pixels in pictures with few
+/// samples would be overlooked.
 const NARROWER: f64 = 5.0;
 
-/// Greatest squared width of a pixel, in squared pixels, that is treated as correct in a JPEG,
-/// whose coding makes edges less sharp. It was measured: 80 correct JPEGs with qualities from 75 to
-/// 100 have at most 4.7, and a picture whose pixels are three times too wide has 7.
+/// Greatest squared pixel width, in squared pixels, that is treated as correct in a JPEG. JPEG
+/// coding makes edges less sharp, so the limit is large. By measurement, 80 correct JPEGs with
+/// qualities from 75 to 100 have widths of at most 4.7, and a picture whose pixels are three times
+/// too wide has 7.
 const WIDE_IN_CODED: f64 = 5.5;
 
-/// Least pixel width that is reported, in pixels. A smaller estimate, which may be 0, is raised to
-/// it.
+/// Least pixel width that is reported, in pixels. Smaller estimates, which may be 0, are raised to
+/// this value.
 const LEAST_WIDTH: f64 = 0.1;
-/// Greatest pixel width that is reported, in pixels. A larger estimate is lowered to it, because
-/// the estimate is only of second order and therefore inexact for wide pixels.
+/// Greatest pixel width that is reported, in pixels. Larger estimates are lowered to this value.
+/// The estimate is a second-order approximation, so it is inexact for wide pixels.
 const MOST_WIDTH: f64 = 6.0;
 
 /// A displacement of edges that is too large to be chance.
@@ -76,7 +77,8 @@ pub struct Displacement {
     pub length: f64,
     /// Displacement at the middle of the fitted group of pixels, to the right and down, in pixels.
     pub by: [f64; 2],
-    /// Squared length of the fitted displacement, in squared standard deviations.
+    /// Squared length of the fitted displacement, in squared standard deviations. The greater it
+    /// is, the less likely it is chance.
     pub square: f64,
 }
 
@@ -92,9 +94,9 @@ struct NormalEquations {
 }
 
 impl NormalEquations {
-    /// Adds the equation of one channel of a pixel to the fit, with the weight `weight`: the six
-    /// unknown coefficients, each multiplied by its factor in `row`, should add up to `difference`.
-    /// The variance of `difference` is `variance`.
+    /// Adds an equation to the fit, for one channel of a pixel. The six unknown coefficients, each
+    /// multiplied by its factor in `row`, should add up to `difference`, which has the variance
+    /// `variance`. `weight` is the weight of the equation.
     fn add(&mut self, row: &[f64; TERMS], difference: f64, weight: f64, variance: f64) {
         for (j, one) in row.iter().enumerate() {
             let weighted = weight * one;
@@ -107,11 +109,11 @@ impl NormalEquations {
         }
     }
 
-    /// Solves for the displacement, which is an affine function of the place in the picture.
-    /// Returns `None` if it may be chance. A small number of samples per pixel may seem to displace
-    /// all edges by up to `off_middle` pixels in each direction. So the constant coefficients are
-    /// reduced by this distance before the length of the displacement is computed. `noise` is the
-    /// real variance of the errors divided by the assumed one.
+    /// Solves for the displacement, which is an affine function of the position in the picture.
+    /// Returns `None` if it may be chance. A correct program with few samples may displace all
+    /// edges by up to `off_middle` pixels in each direction, so this distance is subtracted before
+    /// the length of the displacement is computed. `noise` is the real variance of the errors
+    /// divided by the assumed one.
     fn displacement(&self, off_middle: f64, noise: f64) -> Option<Displacement> {
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
         let full = |matrix: &Symmetric| -> Vec<Vec<f64>> {
@@ -133,8 +135,8 @@ impl NormalEquations {
         }
         let product = fitted.iter().zip(&normal);
         let product: f64 = product.map(|(x, row)| x * dot(&fitted, row)).sum();
-        // Only the part of a displacement along the gradient is visible, so `length` is the root
-        // mean square of this part.
+        // A displacement along an edge is invisible, so `length` is the root mean square of the
+        // part perpendicular to the edges, i.e. along the gradient.
         let length = (product / (normal[0][0] + normal[3][3])).sqrt();
         (square > CHANCE * noise).then_some(Displacement { length, by, square })
     }
@@ -142,21 +144,21 @@ impl NormalEquations {
 
 impl Prediction<'_> {
     /// Returns whether the errors in pixels that mix several colours look like sampling noise. If
-    /// most of these pixels are exact, there is no noise, so large errors in the others have
-    /// another cause.
+    /// most of these pixels are exact, the picture has no noise. Large errors in the other pixels
+    /// then have another cause.
     pub fn is_noise_everywhere(&self) -> bool {
-        /// Greatest squared error of an exact pixel, relative to the variance of one sample. It is
-        /// the mean squared error with 10 000 samples per pixel.
+        /// Greatest squared error of a pixel that counts as exact, divided by the variance of one
+        /// sample. The value is the mean squared error with 10 000 samples per pixel.
         const EXACT: f64 = 1e-4;
-        /// Squared error, relative to the variance of one sample, above which a pixel is wrong if
-        /// most pixels are exact. It is the mean squared error with two samples per pixel. In an
-        /// exact pixel, the error is far smaller.
+        /// Squared error, divided by the variance of one sample, above which a pixel is wrong if
+        /// most pixels are exact. The value is the mean squared error with two samples per pixel,
+        /// far above that of exact pixels.
         const OTHER: f64 = 0.5;
-        /// Least number of wrong pixels that cannot be chance if most pixels are exact. With a
-        /// smaller number, a few odd pixels would make a picture wrong.
+        /// Minimum number of wrong pixels at which a picture is wrong, if most of its pixels are
+        /// exact. With a smaller number, a few odd pixels would make a picture wrong.
         const CHANCE: usize = 4;
         /// Variance of one sample in a pixel, in squared linear light, below which the pixel is not
-        /// tested. Rounding to bytes would dominate its error.
+        /// tested. In such a pixel, errors come mostly from rounding to bytes.
         const LEAST: f64 = 1e-3;
         let share = |at: usize| {
             let variance = self.moments.variance[at].element_sum();
@@ -189,12 +191,13 @@ impl Prediction<'_> {
     }
 
     /// Estimates the width of the pixel filter, in pixels. Returns `None` if it may be 1.
-    /// `deviations` contains the standard deviations of the pixels' channels for one sample per
-    /// pixel. `share` is the variance of a pixel's error relative to that of one sample: 1/n for n
-    /// samples per pixel. `is_coded` says that the picture is a JPEG.
+    /// `deviations` contains, for each channel of each pixel, the standard deviation of one sample.
+    /// `share` is the variance of a pixel's error divided by that of one sample, i.e. 1/n for n
+    /// samples per pixel. `is_coded` says whether the picture is a JPEG.
     ///
-    /// To second order, the mean over a square of the width w differs from the mean over a pixel by
-    /// (w² − 1)/24 times the Laplacian of the picture.
+    /// The estimate is of second order: the mean light over a square of the width w differs from
+    /// the mean over a correct pixel, of the width 1, by (w² − 1)/24 times the Laplacian of the
+    /// picture.
     pub fn pixel_width(&self, deviations: &[f64], share: f64, is_coded: bool) -> Option<f64> {
         let (width, height) = (self.width, self.observed.len() / self.width);
         let mean = &self.moments.mean;
@@ -229,10 +232,11 @@ impl Prediction<'_> {
         (is_sure && is_other).then(|| square.max(0.0).sqrt().clamp(LEAST_WIDTH, MOST_WIDTH))
     }
 
-    /// Returns the displacement of each group of pixels, or `None` if it may be chance. `groups`
-    /// contains the index of each pixel's group. `share` is the variance of a pixel's error divided
-    /// by the variance of one sample: 1/n for n samples per pixel. `is_coded` says that the picture
-    /// is a JPEG.
+    /// Returns the displacement of each group of pixels, for example of the pixels that show one
+    /// object. The result is `None` for a displacement that may be chance. `groups` contains the
+    /// index of each pixel's group. `share` is the variance of a pixel's error divided by the
+    /// variance of one sample, i.e. 1/n for n samples per pixel. `is_coded` says whether the
+    /// picture is a JPEG.
     pub fn displacements(
         &self,
         deviations: &[f64],
@@ -282,8 +286,8 @@ impl Prediction<'_> {
                 expected += weight * error[i];
             }
         }
-        // The errors that are predicted for a JPEG's coding may be too large in the whole picture.
-        // If so, they are scaled down, by the ratio of the observed to the expected errors.
+        // The errors that JPEG coding is expected to cause may be too large in the whole picture.
+        // If so, they are scaled down by the ratio of the observed to the expected errors.
         let noise = if is_coded {
             f64::min(observed / f64::max(expected, 1e-300), 1.0)
         } else {

@@ -1,9 +1,10 @@
-//! A sampling ray tracer that follows the formulas of textbooks. Mistakes in it can be switched on.
+//! A sampling ray tracer that uses the usual textbook formulas, and can make the mistakes of a
+//! faulty program.
 //!
-//! In: a scene, the mistakes, a part of its picture, and a number of samples per pixel. Out: the
-//! mean of each pixel in the part, and the variance of one sample in it, both estimated from
-//! samples at fixed places. The tracer is fast enough to compare hundreds of faulty programs with a
-//! picture in a second. It does not decide what is correct; the exact picture does.
+//! In: a scene, the mistakes, an area of the picture, and a number of samples per pixel. Out: the
+//! mean of each pixel in the area, and the variance of one sample in it. Both are estimated from
+//! samples at fixed positions. The tracer is fast enough to compare hundreds of faulty programs
+//! with a picture in a second. What is correct is decided by the exact picture, not by this tracer.
 
 use glam::{DVec2, DVec3};
 
@@ -17,18 +18,18 @@ use crate::{
     scene::{Checkerboard, Cuboid, Scene, Shape, Sphere},
 };
 
-/// Distance from the origin, in metres, to which a box reaches along an axis if two of its faces
-/// are missing. It should reach to infinity, so any value far beyond the scene works.
+/// Distance from the origin, in metres, to which a box without end extends along an axis. Any value
+/// far beyond the scene works.
 const FAR: f64 = 1e9;
 
 /// Stride between the samples that are tested first, to find out whether a cell has one colour. A
-/// smaller stride tests more samples, which takes longer; a larger one misses more small details.
+/// smaller stride tests more samples and takes longer. A larger one misses more small details.
 const EACH: usize = 4;
 
-/// Places near the corners of a cell, in units of its side. A cell is assumed to have one colour if
-/// these places and every fourth sample (`EACH`) show one colour. In most directions, an edge that
-/// misses all of them cuts off less than 0.5 % of the cell. An edge parallel to a side may cut off
-/// 4 %.
+/// Positions near the corners of a cell, in units of its side. A cell is assumed to have one colour
+/// if these positions and every fourth sample ([`EACH`]) show one colour. An edge that passes by
+/// all of these positions usually cuts off less than 0.5 % of the cell. If it is parallel to a
+/// side, it may cut off 4 %.
 const CORNERS: [DVec2; 4] = [
     DVec2::new(0.04, 0.04),
     DVec2::new(0.96, 0.96),
@@ -41,7 +42,8 @@ struct Traced {
     shape: Shape,
     /// Fault in how rays are intersected with the object; `None` if there is no fault.
     hit: Option<HitFault>,
-    /// Bounding rectangle in the picture, in pixels. No ray outside of it hits the object.
+    /// Bounding rectangle of the object in the picture, in pixels. No ray outside of it hits the
+    /// object.
     bounds: [DVec2; 2],
     /// Decoded colours of the object. A shape with fewer than three colours repeats them.
     colors: [DVec3; 3],
@@ -52,13 +54,13 @@ pub struct Ray<'a> {
     place: DVec2,
     eye: DVec3,
     direction: DVec3,
-    /// Depth or distance per unit of the ray's parameter t, whichever is compared with the near and
-    /// far planes.
+    /// Factor by which the ray's parameter t is multiplied before it is compared with the near and
+    /// far planes. The product is a depth, or in some faulty programs a distance from the eye.
     length: f64,
     /// Object that the ray sees, and the ray's parameter t where it hits the object; `None` for the
     /// background.
     hit: Option<(&'a Traced, f64)>,
-    /// Sort key of `hit`. The hit with the least key is seen.
+    /// Sort key of `hit`. Of all hits of the ray, the one with the least key is seen.
     order: f64,
 }
 
@@ -69,13 +71,15 @@ impl Ray<'_> {
     }
 }
 
-/// A scene, prepared for tracing.
+/// A ray tracer with the mistakes of a faulty program, and a scene that is prepared for it.
 pub struct FaultyTracer {
     projection: Projection,
     behaviour: Behaviour,
-    /// Distance of the samples of neighbouring pixels along x and y, in pixels of the scene.
+    /// Distance between corresponding samples of neighbouring pixels along x and y, in pixels of
+    /// the correct picture.
     spacing: DVec2,
-    /// Place of the scene's picture that the top left corner of the program's picture shows.
+    /// Point of the correct picture that the top left corner of the program's picture shows, in
+    /// pixels.
     offset: DVec2,
     near: f64,
     far: f64,
@@ -126,7 +130,8 @@ impl FaultyTracer {
         let mut spacing = DVec2::from(behaviour.spread);
         let mut offset = DVec2::from(behaviour.offset);
         if behaviour.aspect != 1.0 {
-            // The picture is stretched from the middle of its rows.
+            // The picture is stretched horizontally about its middle, so the middle of each row
+            // stays in place.
             let middle = projection.size.x / 2.0;
             spacing.x *= behaviour.aspect;
             offset.x = middle + (offset.x - middle) * behaviour.aspect;
@@ -143,7 +148,8 @@ impl FaultyTracer {
         }
     }
 
-    /// Takes samples in each pixel of a part of the picture, and returns their means and variances.
+    /// Takes samples in each pixel of the area `part` of the picture. Returns their means and
+    /// variances.
     pub fn moments(&self, part: Area, samples: usize) -> Moments {
         let places = self.places(&lattice(samples));
         let corners = self.places(&CORNERS);
@@ -154,18 +160,18 @@ impl FaultyTracer {
             .chain(corners)
             .collect();
         let mut rays = Vec::new();
-        // Whether the cell that was computed last in each column shows one colour. Cells are
-        // computed row by row, from left to right. So the entry of a cell's column describes the
-        // cell above, and the entry of the column to the left describes the cell to the left.
+        // For each column, whether the last computed cell in it shows one colour. Cells are
+        // computed row by row, from left to right. So when a cell is computed, the entry of its
+        // column describes the cell above, and the entry before it describes the cell to the left.
         let mut is_flat = vec![false; part.width as usize];
         let pixel = |(x, y): (u32, u32)| {
             let column = (x - part.x) as usize;
             let is_beside = is_flat[column] || column > 0 && is_flat[column - 1];
-            // A cell is assumed to have one colour if all tested places show this colour, and the
-            // cell above or to the left has one colour. This neighbour is required because the
-            // squares of a board may be half as large as a cell, and all tested places may then
-            // show one colour by chance. With up to 8 samples, all of them are taken, because the
-            // test would cost more.
+            // A cell is assumed to have one colour if two conditions hold. All tested positions
+            // (`probes`) show one colour, and the cell above or to the left has one colour, too.
+            // Without the second condition, a checkerboard whose squares are half as large as a
+            // cell could show one colour at all tested positions. With up to 8 samples, the test
+            // would cost more than taking all samples.
             let moments = (is_beside && places.len() > 8)
                 .then(|| self.cell((x, y), &probes, &mut rays))
                 .filter(|probed| probed.1 == DVec3::ZERO)
@@ -176,15 +182,16 @@ impl FaultyTracer {
         Moments::exact(part.iter().map(pixel))
     }
 
-    /// Returns places of a pixel where the program takes samples, given where it should. A faulty
-    /// program may spread its samples over more or less than a pixel, so their distances from the
-    /// pixel's middle are scaled.
+    /// Converts the correct sample positions in a pixel to those of the faulty program. It may
+    /// spread its samples over more or less than a pixel, so their distances from the pixel's
+    /// middle are scaled.
     pub fn places(&self, places: &[DVec2]) -> Vec<DVec2> {
         let of_pixel = |place: &DVec2| 0.5 + (place - 0.5) * self.behaviour.pixel;
         places.iter().map(of_pixel).collect()
     }
 
-    /// Returns the mean and the variance of samples at some places of a pixel. `rays` is a buffer.
+    /// Returns the mean and the variance of the samples at the positions `places` of a pixel.
+    /// `rays` is a buffer that is reused.
     pub fn cell<'a>(
         &'a self,
         (x, y): (u32, u32),
@@ -209,7 +216,7 @@ impl FaultyTracer {
         (first + more, variance)
     }
 
-    /// Returns the ray through a place of the picture.
+    /// Returns the ray through the position `place` of the picture, in pixels.
     fn ray(&self, place: DVec2) -> Ray<'_> {
         let place = place * self.spacing + self.offset;
         let (mut eye, mut ray) = (self.projection.eye, self.projection.ray(place));
@@ -226,8 +233,8 @@ impl FaultyTracer {
         }
         let length = match (self.behaviour.clips_distances, self.behaviour.rays) {
             (true, _) => ray.length(),
-            // Depth per unit of the ray's parameter t. In these two projections, the direction
-            // vector may have any depth; in all others, it has the depth 1.
+            // The depth at the ray's parameter t is t times the depth of the direction vector. With
+            // these two kinds of rays, that depth varies. With all others, it is 1.
             (false, Rays::UpAsTop | Rays::Fisheye) => ray.dot(ahead),
             (false, _) => 1.0,
         };
@@ -242,7 +249,7 @@ impl FaultyTracer {
     }
 
     /// Finds what the rays of a cell hit. All rays are intersected with one object before the next
-    /// object, which is faster than the other way round.
+    /// object, because this is faster than the opposite order.
     fn trace<'a>(&'a self, rays: &mut [Ray<'a>]) {
         let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for ray in &*rays {
@@ -286,8 +293,8 @@ impl FaultyTracer {
         }
     }
 
-    /// Intersects rays with the object at an index. Rays that see it before the objects that they
-    /// hit so far hit it now.
+    /// Intersects rays with the object at the index `at`. Each ray keeps the hit that is seen: the
+    /// one so far, or the hit of this object.
     fn hit<'a>(
         &'a self,
         rays: &mut [Ray<'a>],
@@ -337,7 +344,8 @@ impl FaultyTracer {
         shade.max(0.0) * object.colors[color]
     }
 
-    /// Returns a unit normal of a shape at a point of its surface. It may point to either side.
+    /// Returns the unit normal of a shape at a point of its surface. It may point to either side of
+    /// the surface.
     fn normal(&self, shape: &Shape, point: DVec3) -> DVec3 {
         match shape {
             Shape::Sphere(Sphere { center, .. }) => (point - center).normalize(),
@@ -356,9 +364,8 @@ impl FaultyTracer {
         [point[x], point[z]]
     }
 
-    /// Intersects a ray with a sphere by the formula of the faulty program. Returns the ray's
-    /// parameters t at both intersections, the lesser first. Returns `None` if the formula gives no
-    /// intersection.
+    /// Intersects a ray with a sphere as the faulty program does. Returns the ray's parameters t at
+    /// both intersections, the lesser first. Returns `None` if the formula gives no intersection.
     fn on_sphere(&self, sphere: &Sphere, eye: DVec3, ray: DVec3) -> Option<[f64; 2]> {
         let roots = || crossings(&Shape::Sphere(*sphere), eye, ray, 0.0);
         match self.behaviour.spheres {
@@ -373,8 +380,8 @@ impl FaultyTracer {
         }
     }
 
-    /// Returns whether a hit at the ray's parameter t can be seen. `length` is the depth or the
-    /// distance per unit of t, whichever is compared with the near and far planes.
+    /// Returns whether a hit at the ray's parameter t can be seen. The product t · `length` is what
+    /// the program compares with the near and far planes.
     fn counts(&self, t: f64, length: f64) -> bool {
         let is_ahead = t > 0.0 && t * length > self.near && t * length < self.far;
         is_ahead || (self.behaviour.sees_behind() && t < 0.0 && -t < self.far)
@@ -389,8 +396,8 @@ impl FaultyTracer {
     }
 
     /// Returns the ray's parameter t at the visible hit of one object, or `None` if no hit is
-    /// visible. `crossings` contains t at both hits, the lesser first. `length` is the depth or the
-    /// distance per unit of t, whichever the program compares with the near and far planes.
+    /// visible. `crossings` contains t at both hits, the lesser first. The product t · `length` is
+    /// what the program compares with the near and far planes.
     fn first(&self, crossings: [f64; 2], length: f64) -> Option<f64> {
         let counting = crossings.map(|t| Some(t).filter(|t| self.counts(*t, length)));
         match counting {
@@ -400,16 +407,17 @@ impl FaultyTracer {
     }
 }
 
-/// Returns the axis perpendicular to the face of a box that is nearest to a point.
+/// Finds the face of a box that is nearest to a point. Returns the index of the axis perpendicular
+/// to the face.
 fn face(Cuboid { min, max, .. }: &Cuboid, point: DVec3) -> usize {
     let off = (point - min).abs().min((point - max).abs());
     off.min_position()
 }
 
-/// Intersects a ray with a sphere as a faulty program does. Its formula −b ± √(b² − c), the roots
-/// of t² + 2 b t + c = 0, is correct only for rays of length 1, but here the ray reaches to the
-/// view plane, which is `distance` from the eye. Returns the ray's parameters t at both roots, the
-/// lesser first, or `None` if there is no real root.
+/// Intersects a ray with a sphere by a formula that is correct only for direction vectors of length
+/// 1: t = −b ± √(b² − c), the roots of t² + 2 b t + c = 0. The direction vector of the faulty
+/// program reaches from the eye to the view plane, at the distance `distance`. Returns the ray's
+/// parameters t at both roots, the lesser first, or `None` if there is no real root.
 fn with_unit_rays(sphere: &Sphere, distance: f64, eye: DVec3, ray: DVec3) -> Option<[f64; 2]> {
     let from = eye - sphere.center;
     let b = from.dot(distance * ray);
@@ -419,9 +427,9 @@ fn with_unit_rays(sphere: &Sphere, distance: f64, eye: DVec3, ray: DVec3) -> Opt
         .then(|| [-1.0, 1.0].map(|sign| distance * (sign * discriminant.sqrt() - b)))
 }
 
-/// Intersects a ray with the plane of a triangle, without the tests against the triangle's edges
-/// that `hit` omits. Returns the ray's parameter t twice, or `None` if the program misses the
-/// triangle.
+/// Intersects a ray with a triangle as a faulty program does. `hit` says which tests against the
+/// triangle's edges the program omits. Returns the ray's parameter t twice, because a triangle is
+/// hit only once. Returns `None` if the program sees no hit.
 fn on_plane([a, b, c]: &[DVec3; 3], hit: HitFault, eye: DVec3, ray: DVec3) -> Option<[f64; 2]> {
     let (one, other) = (b - a, c - a);
     let normal = one.cross(other);
@@ -441,7 +449,7 @@ fn on_plane([a, b, c]: &[DVec3; 3], hit: HitFault, eye: DVec3, ray: DVec3) -> Op
 }
 
 /// Returns the bounding rectangle of a shape in the picture, in pixels. Returns `None` if the shape
-/// is unbounded, or reaches from ahead of the eye to behind it.
+/// is unbounded, or lies partly ahead of the eye and partly behind it.
 pub fn bounds(shape: &Shape, projection: &Projection) -> Option<[DVec2; 2]> {
     let [min, max] = shape.bounding_box(|triangle| vertices(&triangle.outline))?;
     let corners = corners(min, max);
@@ -454,13 +462,13 @@ pub fn bounds(shape: &Shape, projection: &Projection) -> Option<[DVec2; 2]> {
     }
     let least = places.into_iter().fold(DVec2::INFINITY, DVec2::min);
     let most = places.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
-    // A margin for rounding errors is added on all sides.
+    // The rectangle gets a margin of 1e-6 pixels for rounding errors.
     Some([least - 1e-6, most + 1e-6])
 }
 
 /// Returns a Fibonacci lattice of at least `samples` points in the unit square. If the square is
-/// cut into as many rows, or columns, as there are points, each of them contains one point. So
-/// edges along rows and columns are sampled evenly.
+/// divided into as many rows as there are points, each row contains one point. The same is true of
+/// columns. So horizontal and vertical edges are sampled evenly.
 pub fn lattice(samples: usize) -> Vec<DVec2> {
     let (mut step, mut count) = (1, 1);
     while count < samples {

@@ -1,8 +1,8 @@
-//! Divides the compared part of a picture into cells. For the search, which must be fast, a cell
+//! Divides a picture, or a rectangle of it, into cells. For the search, which must be fast, a cell
 //! spans several pixels. For the final judgement, a cell is a single pixel.
 //!
-//! The cells are rendered as the pixels of a smaller picture. Its camera looks at the same scene
-//! from the same place in the same direction.
+//! The cells are rendered as the pixels of a smaller picture of the same scene, whose camera has
+//! the same eye and the same view direction.
 
 use glam::{DVec2, DVec3};
 
@@ -12,24 +12,25 @@ use crate::{
     scene::{Camera, Image, Lens, Scene},
 };
 
-/// A grid of square cells over a part of a picture.
+/// A grid of square cells over a picture, or over a rectangle of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     /// Number of pixels along a cell's side.
     pub factor: u32,
-    /// Cells that lie inside the compared part of the picture. Their columns and rows are counted
-    /// from the top left of the whole picture.
+    /// Columns and rows of the cells that lie inside the compared rectangle. They are counted from
+    /// the top left of the whole picture.
     pub cells: Area,
     /// Number of cells in a row and in a column of the whole picture.
     pub size: [u32; 2],
-    /// Width of the border that no cell covers, in pixels of the whole picture. There is an equal
-    /// border at the left and right, and at the top and bottom.
+    /// Width of the border of the whole picture that no cell covers, in pixels: x at the left and
+    /// at the right, and y at the top and at the bottom.
     margin: DVec2,
 }
 
 impl Grid {
-    /// Covers a part of a picture with a grid. The part's longer side has at most `longest` cells.
-    /// If the part contains no complete cell of such a grid, each pixel becomes a cell.
+    /// Covers the rectangle `part` of a picture with a grid. The longer side of the rectangle has
+    /// at most `longest` cells. If the rectangle contains no complete cell of this size, each pixel
+    /// becomes a cell.
     pub fn new(image: &Image, part: Area, longest: u32) -> Self {
         let point = |x: u32, y: u32| DVec2::new(f64::from(x), f64::from(y));
         let of = |factor: u32| {
@@ -60,18 +61,18 @@ impl Grid {
             .unwrap_or_else(|| of(1))
     }
 
-    /// Returns the number of cells in the compared part of the picture.
+    /// Returns the number of cells in the compared rectangle.
     pub fn count(&self) -> usize {
         self.cells.pixels() as usize
     }
 
-    /// Returns the number of cells in a row of the compared part of the picture.
+    /// Returns the number of cells in a row of the compared rectangle.
     pub fn width(&self) -> usize {
         self.cells.width as usize
     }
 
     /// Returns the middle of a cell, in pixels of the whole picture. `index` counts the cells of
-    /// the part, row by row.
+    /// the compared rectangle, row by row.
     pub fn middle(&self, index: usize) -> DVec2 {
         let first = DVec2::new(f64::from(self.cells.x), f64::from(self.cells.y));
         let (x, y) = (index % self.width(), index / self.width());
@@ -89,7 +90,8 @@ impl Grid {
         rows.flat_map(move |y| columns.clone().map(move |x| y * width + x))
     }
 
-    /// Returns the camera and the image of a picture whose pixels are the cells.
+    /// Returns the camera and the image with which a scene is rendered so that each pixel is a cell
+    /// of the grid.
     pub fn view(&self, scene: &Scene) -> (Camera, Image) {
         let (mut image, mut camera) = (scene.image, scene.camera);
         if self.factor > 1 {
@@ -104,12 +106,12 @@ impl Grid {
         (camera, image)
     }
 
-    /// Averages the pixels in each cell, ignoring NaN. `pixel` returns the pixel in a column and
-    /// row of the compared part.
+    /// Averages the pixels in each cell, ignoring NaN. `pixel` returns the pixel in a given column
+    /// and row of the whole picture.
     pub fn reduce(&self, pixel: impl Fn(u32, u32) -> DVec3) -> Vec<DVec3> {
         let factor = f64::from(self.factor);
-        // Iterates over the columns, or the rows, of pixels that a cell overlaps. Each comes with
-        // the length of the overlap, in pixels.
+        // Iterates over the columns (or rows) of pixels that a cell overlaps. Each item also
+        // contains the width (or height) of the overlap, in pixels.
         let shares = |cell: u32, margin: f64| {
             let start = margin + f64::from(cell) * factor;
             let end = start + factor;

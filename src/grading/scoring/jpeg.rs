@@ -4,12 +4,13 @@
 //! coding, and the variance that coding adds to each pixel, in linear light. The variance is needed
 //! because the real picture has noise, which changes how it is coded.
 //!
-//! JPEG (ITU-T T.81) transforms each block of 8 × 8 values of luma or chroma into 64 coefficients,
-//! and rounds these to multiples of steps in a table. Rounding to a step s adds the variance s²/12.
-//! The transform preserves sums of squares, so the mean variance of a block's values is the mean
-//! variance of its coefficients. In a block of one colour, only the first coefficient differs from
-//! 0, so only this one is changed by rounding. Chroma is assumed to have half the picture's
-//! resolution, as in most files, so its errors spread up to two pixels.
+//! JPEG (ITU-T T.81) transforms each block of 8 × 8 values of luma (brightness) or chroma (colour)
+//! into 64 coefficients. Each coefficient is rounded to a multiple of a step, which a table
+//! contains. Rounding to a step s adds the variance s²/12. The transform preserves sums of squares,
+//! so the mean variance of a block's values is the mean variance of its coefficients. In a block of
+//! one colour, only the first coefficient differs from 0, so rounding changes only this
+//! coefficient. Chroma is assumed to have half the picture's resolution, as in most files, so its
+//! errors spread up to two pixels.
 
 use glam::DVec3;
 
@@ -22,7 +23,7 @@ use crate::{
 };
 
 /// Side of a block of chroma, in pixels, if chroma has half the picture's resolution. Along the
-/// side are 8 values, each of which spans 2 pixels.
+/// side, there are 8 values of chroma, each of which spans 2 pixels.
 const BLOCK: usize = 16;
 
 /// Distance over which the colours of neighbouring pixels mix, in pixels, if chroma has half the
@@ -51,13 +52,14 @@ pub fn coded(jpeg: &Jpeg, prediction: &Prediction, part: Area) -> Option<Vec<DVe
     Some(pixels.iter().map(light).collect())
 }
 
-/// Returns the variances that JPEG coding adds to the cells of a prediction. A cell is `factor`
-/// pixels wide and tall.
+/// Returns the variances that JPEG coding adds to the cells of a prediction, in squared linear
+/// light. A cell is `factor` pixels wide and tall.
 pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<DVec3> {
     let (mean, width) = (&prediction.moments.mean, prediction.width);
     let height = mean.len() / width;
-    // Weights by which JPEG's conversion from YCbCr multiplies chroma, for the red, green and blue
-    // channels. Green depends on both chroma values, Cb and Cr, so its two weights are added.
+    // Weights by which JPEG's conversion from YCbCr to RGB multiplies chroma, for red, green and
+    // blue. Green depends on both chroma values, Cb and Cr, so its weight is the sum of two
+    // weights.
     const SHARES: [f64; 3] = [1.402, 0.344 + 0.714, 1.772];
     let side = (BLOCK / factor).max(1);
     let reach = MIXED.div_ceil(factor);
@@ -70,8 +72,8 @@ pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<DVe
         let first = *blocks[block(at)].get_or_insert(mean[at]);
         are_flat[block(at)] &= first == mean[at];
     }
-    // Last argument and result for each channel, cached because most pixels equal the one before
-    // and curves are slow.
+    // Last argument and result of the conversion to light, for each channel. They are cached
+    // because most pixels equal the one before, and the conversion is slow.
     let mut known = [([f64::NAN; 2], f64::NAN); 3];
     let pixel = |at: usize| {
         let is_flat = are_flat[block(at)];
@@ -82,20 +84,21 @@ pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<DVe
                 table.mean / count
             }
         };
-        // Chroma of half the resolution mixes the colours of neighbouring pixels, so the range of
-        // their colours adds to the variance.
+        // If chroma has half the resolution, the colours of neighbouring pixels mix. So the
+        // difference between the least and the greatest of these colours adds to the variance.
         let [least, most] = range(mean, width, at, reach);
         let mixed = most - least;
         DVec3::from([0, 1, 2].map(|i| {
-            // The coefficients are rounded to multiples of their steps. The last term is for values
-            // that are rounded or truncated to whole numbers before and after the transform. The
-            // mean squared error of truncation is 1/3, four times that of rounding, hence the
-            // factor 4.
+            // The first two terms come from rounding the coefficients of luma and of chroma. The
+            // last term comes from values that are rounded or truncated to integers before and
+            // after the transform. The mean squared error of truncation is 1/3, four times that of
+            // rounding, hence the factor 4.
             let share = SHARES[i] * SHARES[i];
             let steps = square(&jpeg.luma) + share * square(&jpeg.chroma) + 4.0 * (2.0 + share);
-            // The light increases faster with the 8-bit value in bright areas than in dark ones. So
-            // the greatest likely error is converted to light: five standard deviations
-            // (`DEVIATIONS`) upwards. The result is divided by five.
+            // A step of the 8-bit value changes light more in bright areas than in dark ones. To be
+            // safe, the standard deviation is computed from the greatest likely error: the 8-bit
+            // value is increased by five standard deviations (`DEVIATIONS`), and the increase of
+            // the light is divided by five.
             let by = DEVIATIONS * STEP * (steps / 12.0).sqrt();
             let own = [mean[at][i], by];
             if known[i].0 != own {

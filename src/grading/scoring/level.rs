@@ -1,5 +1,5 @@
-//! A picture at one resolution: what the cells of a grid show, and what they would show if a
-//! hypothesis about the program were correct.
+//! A picture at one resolution, divided into the cells of a grid. This module predicts what the
+//! cells would show if a hypothesis about the program were correct.
 
 use std::{
     cell::{OnceCell, RefCell},
@@ -23,28 +23,30 @@ use crate::{
     grading::hypotheses::{Candidate, Curve},
 };
 
-/// A part of a picture at one resolution. Hypotheses about the program are compared with it.
+/// A picture, or a rectangle of it, at one resolution. Hypotheses about the program that made the
+/// picture are compared with it.
 pub struct Level<'a> {
     pub grid: Grid,
     film: &'a Film,
-    /// The part of the whole picture that the film shows.
+    /// The rectangle of the whole picture that the film shows.
     part: Area,
-    /// Observed light of the cells for each curve that may have encoded it. Computed on demand.
+    /// Observed light of the cells, for each encoding curve that the program may have used.
+    /// Computed on demand.
     observed: [OnceCell<Vec<DVec3>>; Curve::COUNT],
     /// Number of samples per cell with which hypotheses are rendered; `None` if they are rendered
     /// exactly.
     samples: Option<usize>,
     pub jpeg: Option<Jpeg>,
-    /// Rendering of an earlier hypothesis. A new hypothesis is rendered only where its picture
-    /// differs from this one.
+    /// Rendering of an earlier hypothesis, chosen by [`Level::compare_with`]. A new hypothesis is
+    /// rendered only where its picture differs from this rendering.
     base: RefCell<Option<Arc<Rendering>>>,
-    /// Rendering of the last hypothesis. The next hypothesis is rendered only where its picture
-    /// differs from this rendering and from that in `base`.
+    /// Rendering of the last hypothesis. Like `base`, it is reused: the next hypothesis is compared
+    /// with both, and rendered only where it differs from the more similar one.
     last: RefCell<Option<Arc<Rendering>>>,
 }
 
 impl<'a> Level<'a> {
-    /// Creates a level from a picture and a grid. The film shows the part `part` of the whole
+    /// Creates a level from a picture and a grid. The film shows the rectangle `part` of the whole
     /// picture. `samples` is the number of samples per cell with which hypotheses about the program
     /// are rendered, or `None` to render them exactly.
     pub fn new(
@@ -66,10 +68,10 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// Returns a copy of the level whose observed light can be compared with sampled predictions.
-    /// `sampled` and `exact` are two predictions of one hypothesis. Their difference is the
-    /// sampling error, which is added to the observed light. Similar hypotheses have the same
-    /// sampling error, so it cancels when they are compared with this copy.
+    /// Returns a copy of the level in which the observed light can be compared with sampled
+    /// predictions. Similar hypotheses have almost the same sampling error, so this error is added
+    /// to the observed light, and cancels in comparisons. It is the difference of `sampled` and
+    /// `exact`, two predictions of one hypothesis.
     pub fn with_error(&self, sampled: &Prediction, exact: &Prediction) -> Self {
         let mut level = Self::new(self.grid, self.film, self.part, self.samples, self.jpeg);
         level.base = self.base.clone();
@@ -99,8 +101,8 @@ impl<'a> Level<'a> {
         Some(rendering)
     }
 
-    /// Sets the rendering that later hypotheses reuse. They are rendered only where their pictures
-    /// differ from it.
+    /// Sets the rendering that later hypotheses reuse (`base`). They are rendered only where their
+    /// pictures differ from this rendering.
     pub fn compare_with(&self, rendering: Arc<Rendering>) {
         self.base.replace(Some(rendering));
     }
@@ -113,7 +115,7 @@ impl<'a> Level<'a> {
             if curve == Curve::Correct {
                 return self.grid.reduce(pixel);
             }
-            // Most pixels have one of few values, so results are cached.
+            // Most pixels have one of a few values, so the decoded values are cached.
             let lights: RefCell<HashMap<u64, f64>> = RefCell::default();
             let light = |seen: f64| {
                 let mut lights = lights.borrow_mut();
@@ -124,7 +126,8 @@ impl<'a> Level<'a> {
         })
     }
 
-    /// Averages a rendering of all pixels of a part over the cells of the level's grid.
+    /// Averages a rendering over the cells of the level's grid. The rendering contains all pixels
+    /// of the compared rectangle.
     pub fn reduced(&self, rendering: &Arc<Rendering>) -> Arc<Rendering> {
         let (pixels, part) = (&rendering.correct, rendering.part);
         if part == self.grid.cells {

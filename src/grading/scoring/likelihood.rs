@@ -1,14 +1,15 @@
 //! Computes how likely a picture is, given a prediction.
 //!
 //! A pixel shows the mean of n samples, rounded. Its error has the variance v/n + s²/12, where v is
-//! the variance of one sample in the pixel, and s is the step to which values are rounded. n is
-//! fitted. Only random sampling has exactly this variance everywhere, and some pixels may be wrong
+//! the variance of one sample in the pixel, and s is the step to which values are rounded. The
+//! number n is fitted. The formula is exact only for random sampling, and some pixels may be wrong
 //! for other reasons. So errors are modelled by Student's t distribution with two degrees of
-//! freedom (Lange, Little and Taylor, Robust statistical modeling using the t distribution, 1989).
+//! freedom, which allows large errors (Lange, Little and Taylor, Robust statistical modeling using
+//! the t distribution, 1989).
 //!
-//! Of two hypotheses about the program, the one with the greater likelihood is chosen, after a
-//! penalty for each fitted number: half the logarithm of the number of pixels (Schwarz, Estimating
-//! the dimension of a model, 1978).
+//! Of two hypotheses about the program, the one under which the picture is more likely is chosen.
+//! Each fitted number reduces the logarithm of the likelihood by a penalty: half the logarithm of
+//! the number of pixels (Schwarz, Estimating the dimension of a model, 1978).
 
 use glam::DVec3;
 
@@ -19,8 +20,8 @@ use crate::grading::hypotheses::Curve;
 /// larger number, a few large errors would change a fit more.
 const FREEDOM: f64 = 2.0;
 
-/// Number of rounds of fitting 1/n, where n is the number of samples per pixel. Each round leaves
-/// less than half of the error of the round before, so 8 rounds leave less than 1/256.
+/// Number of rounds in which 1/n is fitted, where n is the number of samples per pixel. Each round
+/// reduces the error of 1/n to less than half, so 8 rounds reduce it to less than 1/256.
 const ROUNDS: usize = 8;
 
 /// How well a prediction fits a picture.
@@ -31,20 +32,20 @@ pub struct Score {
     /// Number of independent samples per pixel that would cause as much noise as the picture has;
     /// `None` if it has no noise.
     pub samples: Option<f64>,
-    /// Squared error of each pixel relative to its variance, summed over the channels.
+    /// Squared error of each pixel divided by its variance, summed over the channels.
     pub chi_squares: Vec<f64>,
     /// Sum of the squared differences between the picture and the prediction.
     pub squares: f64,
-    /// Part of the sum of the squared differences that noise and rounding explain.
+    /// Part of `squares` that noise and rounding explain.
     pub noise: f64,
-    /// Variance of a pixel's error relative to the variance of one sample: 1/n for n samples per
-    /// pixel.
+    /// Variance of a pixel's error divided by the variance of one sample, i.e. 1/n for n samples
+    /// per pixel.
     pub share: f64,
 }
 
-/// Difference between a pixel and its prediction, and the two parts of its variance. `variance` is
-/// the variance of one sample. `rounding` is the variance of rounding plus the variance of the
-/// predicted mean.
+/// Difference between a pixel and its prediction, with two variances from which its own is
+/// computed. `variance` is the variance of one sample. `rounding` is the variance of rounding plus
+/// the variance of the predicted mean.
 struct PixelError {
     difference: DVec3,
     variance: DVec3,
@@ -68,7 +69,7 @@ impl PixelError {
         self.variance * share + self.rounding
     }
 
-    /// Returns the squared error relative to its variance, summed over the channels. `share` is 1/n
+    /// Returns the squared error divided by its variance, summed over the channels. `share` is 1/n
     /// for n samples per pixel.
     fn chi_square(&self, share: f64) -> f64 {
         (self.difference * self.difference / self.total(share)).element_sum()
@@ -88,7 +89,7 @@ impl Prediction<'_> {
     pub fn score(&self) -> Score {
         let errors = (0..self.observed.len()).map(|at| PixelError::of(self, at));
         let errors: Vec<PixelError> = errors.collect();
-        // Pixels of one colour have no sampling error, so they say nothing about `share`.
+        // Pixels of one colour have no sampling error, so `share` is fitted to the other pixels.
         let has_several = |one: &&PixelError| one.variance != DVec3::ZERO;
         let mixed: Vec<&PixelError> = errors.iter().filter(has_several).collect();
         // Estimate of 1/n, where n is the number of samples per pixel: the variance of a pixel's
@@ -107,9 +108,9 @@ impl Prediction<'_> {
                 share = (share + above / below).clamp(1e-6, 1.0);
             }
         }
-        // The likelihood of the decoded light is converted to a likelihood of the light that
-        // viewers see. Hypotheses with different encodings decode a picture to different light, so
-        // their likelihoods could not be compared otherwise.
+        // Hypotheses with different encodings decode a picture to different light, so likelihoods
+        // of the decoded light cannot be compared. They are converted to likelihoods of the light
+        // that viewers see, which is the same for all hypotheses.
         let stretch = |light: &f64| {
             let own = Curve::Correct.step(self.curve.seen(*light));
             libm::log(own / self.curve.step(*light))
@@ -120,9 +121,9 @@ impl Prediction<'_> {
             _ => -stretches.sum::<f64>(),
         };
         let (mut squares, mut expected) = (0.0, 0.0);
-        // Two sums over the pixels that mix several colours: `of_samples` is the sum of the
-        // variances of one sample. `beyond` is the sum of the squared differences that rounding
-        // does not explain.
+        // Sums over the pixels that mix several colours. `of_samples` sums the variances of one
+        // sample. `beyond` sums the parts of the squared differences that rounding does not
+        // explain.
         let (mut of_samples, mut beyond) = (0.0, 0.0);
         for one in &errors {
             likelihood += one.density(share);
@@ -133,8 +134,8 @@ impl Prediction<'_> {
             let has_several = one.variance.cmpgt(DVec3::ZERO);
             beyond += DVec3::select(has_several, square - one.rounding, DVec3::ZERO).element_sum();
         }
-        // Noise that is less than that of 100 000 samples per pixel cannot be distinguished from
-        // rounding. The number of samples is then unknown.
+        // With more than 100 000 samples per pixel, noise cannot be distinguished from rounding, so
+        // the number of samples is unknown.
         let is_known = beyond > 1e-5 * of_samples;
         Score {
             likelihood,
@@ -146,14 +147,15 @@ impl Prediction<'_> {
         }
     }
 
-    /// Tests whether the picture shows the change from one prediction, `self`, to another one,
-    /// `other`. The first result is the observed fraction of the change: 0 if the picture fits
+    /// Tests whether the picture fits the prediction `self` or the prediction `other`. The first
+    /// result is the observed fraction of the change from `self` to `other`: 0 if the picture fits
     /// `self`, and 1 if it fits `other`. The second result is this fraction divided by its standard
     /// deviation. `score` is the score of `self`.
     pub fn observed_share(&self, score: &Score, other: &Self) -> [f64; 2] {
         let mut deviations = self.deviations();
-        // The greater of the two predictions' variances is used. But if the predictions assume
-        // different encodings, their variances are not comparable, so those of `self` are used.
+        // For each pixel, the greater of the two predictions' variances is used. If the predictions
+        // assume different encodings, their variances cannot be compared, so those of `self` are
+        // used.
         let is_alike = self.curve == other.curve;
         if is_alike {
             let others = deviations.iter_mut().zip(other.deviations());
@@ -183,7 +185,7 @@ impl Prediction<'_> {
         [seen / all.max(1e-300), seen / variance.max(1e-300).sqrt()]
     }
 
-    /// Returns the variances of a pixel's error, for each channel. `share` is 1/n for n samples per
+    /// Returns the variance of a pixel's error for each channel. `share` is 1/n for n samples per
     /// pixel.
     pub fn error(&self, at: usize, share: f64) -> DVec3 {
         PixelError::of(self, at).total(share)

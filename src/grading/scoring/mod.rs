@@ -1,16 +1,18 @@
-//! Scores how well a hypothesis about the program explains a picture.
+//! Scores how well a hypothesis about the program, i.e. a set of mistakes, explains a picture.
 //!
-//! In: a hypothesis, and a picture at one resolution (`level`), which is divided into cells
-//! (`grid`). Out: a `prediction` of what the cells show.
+//! In: a hypothesis, and a picture at one resolution (`level`), which is divided into the cells of
+//! a `grid`. Out: a `prediction`, i.e. the light that each cell should show and the light that it
+//! does show.
 //!
 //! First, a `rendering` of the hypothesis computes the mean and the variance of each cell
-//! (`moments`). They are exact if the program traces the rays of its scene correctly. If it does
-//! not, or on the coarsest grid, the `faulty_tracer` estimates them from samples. Next, pixels are
-//! rearranged, and effects on light and `jpeg` coding are applied.
+//! (`moments`). These are exact if the program traces rays correctly. If it does not, or if the
+//! grid is the coarsest one, the `faulty_tracer` estimates them from samples. Next, the cells are
+//! rearranged if the program arranges pixels wrongly. Finally, effects on light and `jpeg` coding
+//! are applied.
 //!
 //! A prediction says how likely the picture is (`likelihood`), which pixels are wrong for reasons
 //! other than sampling noise (`strays`), and whether edges are displaced (`displacement`). `work`
-//! counts the cost.
+//! counts the work that is spent, and limits it.
 
 mod displacement;
 mod faulty_tracer;

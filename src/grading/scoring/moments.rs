@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::{area::Area, color::Color, exact::ExactPixel, grading::hypotheses::Curve};
 
-/// Means and variances of cells of a picture, in linear light.
+/// Means and variances of the light in cells of a picture. Light is linear.
 #[derive(Clone, Debug, Default)]
 pub struct Moments {
     /// Mean light of each cell.
@@ -22,8 +22,8 @@ impl Moments {
         Self::exact((0..cells).map(|_| Default::default()))
     }
 
-    /// Collects the means and the variances of one sample for cells whose means are exact. The
-    /// variances of these means are therefore 0.
+    /// Collects the mean of each cell and the variance of one sample in it. The means are exact, so
+    /// their own variances are set to 0.
     pub fn exact(pixels: impl Iterator<Item = (DVec3, DVec3)>) -> Self {
         let (mean, variance): (Vec<_>, Vec<_>) = pixels.unzip();
         let mean_variance = vec![DVec3::ZERO; mean.len()];
@@ -34,8 +34,8 @@ impl Moments {
         }
     }
 
-    /// Replaces the means and variances in an area. `self` describes the cells of `part`, row by
-    /// row, and `own` describes those of `area`.
+    /// Replaces the means and variances of the cells in `area` by those in `own`. `self` contains
+    /// the cells of `part`, row by row, and `own` contains the cells of `area`.
     pub fn put(&mut self, part: Area, area: Area, own: &Self) {
         for (from, (x, y)) in area.iter().enumerate() {
             let at = part.index(x, y);
@@ -62,8 +62,8 @@ impl Moments {
     }
 }
 
-/// Returns the least and the greatest values in the cells that are at most `around` columns and
-/// rows away from a cell, for each channel. A row of `values` contains `width` cells.
+/// Returns for each channel the least and the greatest value near the cell `at`, i.e. in all cells
+/// that are at most `around` columns and rows away. A row of `values` contains `width` cells.
 pub fn range(values: &[DVec3], width: usize, at: usize, around: usize) -> [DVec3; 2] {
     let (x, y) = (at % width, at / width);
     let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -76,9 +76,9 @@ pub fn range(values: &[DVec3], width: usize, at: usize, around: usize) -> [DVec3
     [least, most]
 }
 
-/// Returns a function that maps a colour to six numbers: its channels, decoded by `decoding`, and
-/// the squares of these. The means of the six numbers over a pixel give the mean and the variance
-/// of a sample.
+/// Returns a function that maps a colour to six numbers: its three channels, decoded by `decoding`,
+/// and their squares. From the means of these numbers over a pixel, [`moments`] computes the mean
+/// and the variance of a sample.
 pub fn numbers(decoding: Curve) -> impl Fn(Color) -> [f64; 6] {
     move |color| {
         let [r, g, b] = color.to_linear().map(|light| decoding.light(light));
@@ -86,7 +86,8 @@ pub fn numbers(decoding: Curve) -> impl Fn(Color) -> [f64; 6] {
     }
 }
 
-/// Returns the mean and the variance of one sample in an exact pixel.
+/// Returns the mean of an exact pixel and the variance of one sample in it. `pixel` contains the
+/// means of the six numbers that [`numbers`] returns.
 pub fn moments(pixel: &ExactPixel<6>) -> (DVec3, DVec3) {
     let [mean, square] = [0, 3].map(|at| DVec3::from_slice(&pixel.mean[at..]));
     let variance = (square - mean * mean).max(DVec3::ZERO) + pixel.bound * pixel.bound;

@@ -1,5 +1,5 @@
-//! What the cells of a picture should show if a hypothesis about the program is correct, and what
-//! they do show.
+//! Compares the light that the cells of a picture show with the light that they should show if a
+//! hypothesis about the program is correct.
 
 use std::{cell::OnceCell, sync::Arc};
 
@@ -15,23 +15,25 @@ use crate::{
 };
 
 /// Variance of one sample, in squared linear light, below which a pixel is treated as having one
-/// colour. With this value, a black pixel may be white in at most about a billionth of its area.
+/// colour. With this value, a black pixel with a white spot of about a billionth of its area still
+/// counts as black.
 pub const FLAT: f64 = 1e-9;
 
-/// Light of a channel, from 0 to 1, above which the channel is treated as full. The program may
-/// have computed more light, which was clipped. Only the two greatest bytes are above 0.99.
+/// Light of a channel, from 0 to 1, above which the channel is treated as full, i.e. as possibly
+/// clipped. Only the two greatest byte values, 254 and 255, are above 0.99.
 const FULL: f64 = 0.99;
 /// Light of a channel, from 0 to 1, below which the channel is not used to estimate the factor by
 /// which a program multiplies light. Rounding to bytes changes a light of 0.01 by up to 3 %, and
-/// less light by more.
+/// darker light by more.
 const EMPTY: f64 = 0.01;
-/// Maximum relative difference between two ratios of observed to predicted light that are treated
-/// as equal. A cell's ratio is compared with the median ratio, and the estimated factor with 1.
-/// Rounding to a byte changes a light of 0.01 (`EMPTY`) or more by at most about 3 %.
+/// Maximum relative difference between two factors that are treated as equal. A factor is the ratio
+/// of observed to predicted light. The factor of each cell is compared with the median, and the
+/// final factor with 1. Rounding to bytes changes a light of at least 0.01 ([`EMPTY`]) by at most
+/// about 3 %.
 const ALIKE: f64 = 0.03;
 
-/// Mean change of a value that is truncated to 8 bits, in steps: truncation loses between 0 and 1
-/// step.
+/// Mean change of a value that is truncated to 8 bits, in 8-bit steps. Truncation loses between 0
+/// and 1 step.
 const CUT_OFF: f64 = -0.5;
 
 /// Predicted and observed light of the cells of a picture.
@@ -50,16 +52,16 @@ pub struct Prediction<'a> {
     /// Fitted factor by which the program multiplies light. It is 1 unless the program has the
     /// effect `Effect::Gain`.
     pub gain: f64,
-    /// Differences between observed and predicted light if bytes are truncated, cached because they
-    /// take long to compute.
+    /// Differences between observed and predicted light if the program truncates bytes. Cached,
+    /// because they take long to compute.
     of_cut_off: OnceCell<Vec<DVec3>>,
 }
 
-/// Blurs cells by a Gaussian. `variance` is its variance, in squared cells. There are `width` cells
-/// in a row.
+/// Blurs a picture of cells by a Gaussian with the variance `variance`, in squared cells. There are
+/// `width` cells in a row.
 ///
-/// A kernel of three cells with the weights a, 1 − 2a and a has the variance 2a. Applying it
-/// repeatedly, with a ≤ 1/16, approximates a Gaussian.
+/// The Gaussian is approximated by repeated blurring with a kernel of three cells. With the weights
+/// a, 1 − 2a and a, this kernel has the variance 2a. Here a is at most 1/16.
 fn blurred(mut cells: Vec<DVec3>, width: usize, variance: f64) -> Vec<DVec3> {
     let height = cells.len() / width;
     let rounds = (8.0 * variance).ceil();
@@ -81,8 +83,8 @@ fn blurred(mut cells: Vec<DVec3>, width: usize, variance: f64) -> Vec<DVec3> {
     cells
 }
 
-/// Applies a curve to the mean of each channel, and multiplies the variance by the squared slope.
-/// `quick` is a fast approximation of the curve, from which the slope is computed.
+/// Applies a curve to the mean of each channel, and multiplies the variance by the squared slope of
+/// the curve. The slope is computed from `quick`, a fast approximation of the curve.
 fn map_channels(
     mean: &mut [DVec3],
     variance: &mut [DVec3],
@@ -91,10 +93,10 @@ fn map_channels(
 ) {
     let slope_of = |mean: f64, variance: f64| {
         let mean = mean.clamp(0.0, 1.0);
-        // Mean slope of the curve over the range of light that noise spans. The noise is taken to
-        // be the standard deviation of one sample, or an 8-bit step if this is greater. A clipped
-        // curve is flat on one side, which reduces the mean slope. So the slope is also computed
-        // for a quarter of the noise, and the steeper slope is used.
+        // The slope is the mean slope over the range of light that noise spans: one standard
+        // deviation of a sample, but at least an 8-bit step, on both sides of the mean. If the
+        // curve is clipped, a part of this range is flat, and the mean slope is too small. So the
+        // slope is also computed over a quarter of the range, and the steeper slope is used.
         let slope = |part: f64| {
             let by = variance.sqrt().max(STEP) * part;
             let (low, high) = ((mean - by).max(0.0), (mean + by).min(1.0));
@@ -102,8 +104,8 @@ fn map_channels(
         };
         slope(0.25).abs().max(slope(1.0).abs())
     };
-    // Last argument and result of `curve` for each channel, cached because most cells equal the one
-    // before and the curve may be slow.
+    // Last argument and result of `curve`, for each channel. They are cached because most cells
+    // equal the one before, and the curve may be slow.
     let mut known = [[f64::NAN; 2]; 3];
     for (mean, variance) in mean.iter_mut().zip(variance) {
         for i in 0..3 {
@@ -119,15 +121,16 @@ fn map_channels(
     }
 }
 
-/// Maximum relative deviation of an estimated factor from a power of 2 at which the factor is
-/// replaced by the power. Rounding to bytes changes the estimate by less.
+/// Maximum relative difference between an estimated factor and a power of 2 at which the factor is
+/// replaced by this power. Rounding to bytes changes the estimate by less than this difference.
 const POWER: f64 = 0.005;
 
-/// Estimates the factor between observed and predicted light, from cells that should show one
-/// colour. First, `function` is applied to the light. The factor is the median of the ratios,
-/// refined by the mean of similar ratios. If less than half of the ratios are similar, or if the
-/// refined factor is close to 1, the result is 1. Channels that are full, i.e. clipped, are
-/// ignored. If all are full, the factor is the least one that makes them full.
+/// Estimates the factor by which a program multiplies light, after applying `function`. In each
+/// channel of each cell that should show one colour, the factor is the ratio of observed to
+/// predicted light. The result is a mean of the ratios close to their median. It is 1 if less than
+/// half of the ratios are close, or if the mean is close to 1. Channels that are full, i.e.
+/// clipped, are ignored. If all are full, the result is the least factor that makes all of them
+/// full.
 fn gain(observed: &[DVec3], mean: &[DVec3], variance: &[DVec3], function: &Tabulated) -> f64 {
     let flat = (0..mean.len()).filter(|&at| variance[at].max_element() < FLAT);
     let pairs = flat.flat_map(|at| [0, 1, 2].map(|i| [observed[at][i], mean[at][i]]));
@@ -231,9 +234,9 @@ impl<'a> Prediction<'a> {
                             let before = mean[at];
                             let sharp = (*own + more).clamp(DVec3::ZERO, DVec3::ONE);
                             mean[at] = sharp.map(srgb_to_linear);
-                            // Sharpening amplifies noise. The change of the cell's mean is taken as
-                            // an estimate of the added standard deviation, so its square is added
-                            // to the variance.
+                            // Sharpening amplifies noise. The added standard deviation is estimated
+                            // by the change of the cell's mean, so the square of this change is
+                            // added to the variance.
                             let by = mean[at] - before;
                             variance[at] += by * by;
                         }
@@ -241,7 +244,8 @@ impl<'a> Prediction<'a> {
                 }
                 Effect::Blur(width) => {
                     // A square of the width w has the variance w²/12 along each axis. A correct
-                    // pixel has the width 1, so the blur has the variance (w² − 1)/12.
+                    // pixel has the width 1. So the blur that widens it has the variance (w² −
+                    // 1)/12.
                     let cell = f64::from(grid.factor);
                     let spread = (width * width - 1.0) / (12.0 * cell * cell);
                     let squares = variance.iter().zip(mean.iter());
@@ -263,8 +267,8 @@ impl<'a> Prediction<'a> {
                         is_within && is_near(observed[at].into(), light)
                     };
                     for at in (0..observed.len()).filter(|&at| is_part(at)) {
-                        // The border of the patch mixes with the colours around it, so adjacent
-                        // cells are replaced, too.
+                        // At the border of the patch, its colour mixes with the colours around it.
+                        // So adjacent cells are replaced, too.
                         for near in grid.around(at, 1) {
                             (mean[near], variance[near]) = (observed[near], DVec3::ZERO);
                         }
@@ -310,8 +314,8 @@ impl<'a> Prediction<'a> {
     }
 
     /// Returns the difference between the observed and the predicted light of a cell, if the
-    /// program truncates bytes. In a cell of one colour, truncation drops the fractional part of
-    /// the byte; in other cells, it loses half a step on average.
+    /// program truncates bytes. In a cell of one colour, truncation drops the fraction of the byte.
+    /// In other cells, it loses half a step on average.
     fn difference_of_cut_off(&self, at: usize) -> DVec3 {
         let (seen, mean) = (self.observed[at], self.moments.mean[at]);
         let is_flat = self.is_flat(at);
@@ -327,8 +331,8 @@ impl<'a> Prediction<'a> {
         }))
     }
 
-    /// Returns the differences between observed and predicted light of all cells, channel by
-    /// channel, in the light that viewers of the file see.
+    /// Returns the differences between observed and predicted light for each channel of each cell.
+    /// Light is what viewers of the picture's file see.
     pub fn differences(&self) -> Vec<f64> {
         let own = |at: usize| match self.curve {
             Curve::Correct => self.difference(at),
@@ -343,10 +347,10 @@ impl<'a> Prediction<'a> {
             .collect()
     }
 
-    /// Returns for each cell, channel by channel, the standard deviation of the difference between
-    /// observed and predicted light if the cell had one sample. The greatest variance of a sample
-    /// among the cell and its neighbours is used, so that the result is large enough even if edges
-    /// are displaced by a cell.
+    /// Returns for each channel of each cell the standard deviation of the difference between
+    /// observed and predicted light if the cell had one sample. It is computed from the greatest
+    /// variance of a sample in the cell and its neighbours, so that it is large enough even if
+    /// edges are displaced by a cell.
     pub fn deviations(&self) -> Vec<f64> {
         let cells = 0..self.observed.len();
         let deviations = cells.flat_map(|at| {

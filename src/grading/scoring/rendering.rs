@@ -1,6 +1,6 @@
-//! Renders a hypothesis about the program in the cells of a grid, before pixels are rearranged and
-//! light is changed. The result is exact if the program traces the rays of its scene correctly. If
-//! it does not, or on the coarsest grid, the faulty tracer takes samples.
+//! Renders the scene of a hypothesis about the program in the cells of a grid. Wrong arrangements
+//! of pixels and effects on light are applied later. The result is exact if the program traces rays
+//! correctly. If it does not, or if the grid is the coarsest one, [`FaultyTracer`] takes samples.
 
 use std::{cell::OnceCell, sync::Arc};
 
@@ -19,31 +19,32 @@ use crate::{
     scene::Scene,
 };
 
-/// Number of samples per cell if the program traces rays wrongly. The picture of such a program
-/// cannot be rendered exactly. The number is a Fibonacci number, because the samples form a
-/// Fibonacci lattice. With more samples, pictures are less noisy, but take longer.
+/// Number of samples per cell for a program that traces rays wrongly, because its picture cannot be
+/// rendered exactly. It is a Fibonacci number, because the samples form a Fibonacci lattice. With
+/// more samples, pictures are less noisy, but take longer.
 const SAMPLES: usize = 34;
 
-/// Fraction of a cell's area in which the faulty tracer typically overlooks another colour. The
-/// tracer first tests some places of the cell. In most directions, an edge that misses these places
-/// cuts off about 0.1 % of the cell on average.
+/// Fraction of a cell's area whose colour [`FaultyTracer`] may overlook. The tracer assumes that a
+/// cell has one colour if some tested positions show one colour. An edge that passes by all these
+/// positions cuts off about 0.1 % of the cell on average.
 const MISSED: f64 = 1e-3;
 
-/// The mean and the variance of each cell that a hypothesis about the program renders.
+/// Means and variances of the cells that a hypothesis about the program renders.
 #[derive(Clone)]
 pub struct Rendering {
     pub candidate: Candidate,
     pub part: Area,
-    /// Means and variances of the hypothesis's scene, traced correctly. On the coarsest grid, the
-    /// scene is traced with the faults of the hypothesis instead.
+    /// Means and variances if the scene of the hypothesis is traced correctly. Only on the coarsest
+    /// grid, the scene is traced with the faults of the hypothesis.
     pub correct: Arc<Moments>,
-    /// Means and variances if the scene is traced with the faults of the hypothesis; `None` if
-    /// there are no faults, or on the coarsest grid.
+    /// Means and variances if the scene is traced with the faults of the hypothesis. `None` if
+    /// there are no faults, and always on the coarsest grid, where `correct` contains them.
     behaved: Option<Arc<Moments>>,
 }
 
 impl Rendering {
-    /// Creates the rendering of a hypothesis that traces rays correctly, in a part of the picture.
+    /// Creates the rendering of a hypothesis in the area `part`. The hypothesis must trace rays
+    /// correctly.
     pub fn new(candidate: Candidate, part: Area, moments: Arc<Moments>) -> Self {
         Self {
             candidate,
@@ -53,7 +54,7 @@ impl Rendering {
         }
     }
 
-    /// Returns the part of the rendering that a grid of the same resolution shows.
+    /// Returns the part of the rendering that lies in `grid`, which must have the same resolution.
     pub fn cropped(&self, grid: &Grid) -> Self {
         let part = self.candidate.layout.sources(grid.cells, grid.size);
         let order: Vec<usize> = part.iter().map(|(x, y)| self.part.index(x, y)).collect();
@@ -84,8 +85,8 @@ impl Rendering {
 }
 
 impl Candidate {
-    /// Returns a scene whose pixels are the cells of a grid, without the objects that the
-    /// hypothesis omits.
+    /// Returns the hypothesis's scene, with a camera and an image for which each pixel is a cell of
+    /// the grid. Objects that the hypothesis does not draw are left out.
     pub fn drawn(&self, grid: &Grid) -> Scene {
         let (camera, image) = grid.view(&self.scene);
         let mut scene = Scene {
@@ -103,8 +104,8 @@ impl Candidate {
     }
 
     /// Renders the hypothesis in the cells of a grid: exactly, or with `samples` samples per cell.
-    /// Cells that a rendering in `known` shows in the same way are copied from it. Returns `None`
-    /// if the work is cancelled or exceeds its budget.
+    /// Cells that look the same in a rendering in `known` are copied from this rendering. Returns
+    /// `None` if the work is cancelled or exceeds its budget.
     pub fn render(
         &self,
         grid: &Grid,
@@ -126,8 +127,8 @@ impl Candidate {
         let scene = OnceCell::new();
         let scene = || scene.get_or_init(|| self.drawn(grid));
         let tracer = |behaviour: Behaviour| {
-            // The scene lacks the objects that the program omits, so the index of the faulty object
-            // is converted to its index among the drawn ones.
+            // The scene contains only the objects that the program draws. So the index of the
+            // faulty object is converted to its index among the drawn objects.
             let drawn = |at: usize| self.is_drawn[..at].iter().filter(|is| **is).count();
             let hit = behaviour.hit.filter(|(at, _)| self.is_drawn[*at]);
             let behaviour = Behaviour {
@@ -169,15 +170,15 @@ impl Candidate {
         })
     }
 
-    /// Returns the area in which the pictures of two hypotheses may differ, before pixels are
-    /// rearranged. The rest of `part` is the same in both.
+    /// Returns the area of `part` in which the pictures of two hypotheses may differ. Wrong
+    /// arrangements of pixels are not yet applied to these pictures.
     fn changed(&self, other: &Self, grid: &Grid, part: Area) -> Area {
         if self.traces_as(other) {
             return Area::whole(0, 0);
         }
         let (one, two) = (&self.scene, &other.scene);
-        // If the program shows no object outside its correct outline, a changed object makes a
-        // difference only inside its bounding rectangle.
+        // If no object is seen outside its correct outline, a changed object makes a difference
+        // only inside its bounding rectangle.
         let is_in_place = self.behaviour.is_in_place();
         let is_same_view = one.camera == two.camera && one.image == two.image;
         if !is_in_place || !is_same_view || self.decoding != other.decoding {
@@ -212,9 +213,9 @@ impl Candidate {
     }
 }
 
-/// Returns the means and variances of the cells of `part`. `known` contains means and variances to
-/// copy, and an area in which they must not be copied. Cells in this area are computed by `make`,
-/// and so are all cells if `known` is `None`.
+/// Returns the means and variances of the cells of `part`. `known` contains means and variances
+/// that can be copied, except in the area that it also contains. The cells in this area are
+/// computed by `make`. If `known` is `None`, `make` computes all cells.
 fn completed(
     known: Option<(&Arc<Moments>, Area)>,
     part: Area,
@@ -231,9 +232,10 @@ fn completed(
     }
 }
 
-/// Replaces exact means and variances of the cells of an area by sampled ones where the program's
-/// faults make a difference. `own` has the samples of the faulty tracer. A cell is replaced unless
-/// it agrees with the exact one, or with the same samples of the tracer `right`, which is correct.
+/// Replaces exact means and variances by sampled ones in those cells of `area` in which the
+/// program's faults make a difference. `own` contains the sampled cells. They make no difference if
+/// they equal the exact ones in `correct`, or those that `right`, a tracer without faults, computes
+/// from the same samples.
 fn replaced_where_they_differ(
     mut correct: Moments,
     own: &Moments,

@@ -1,4 +1,4 @@
-//! Finds errors in a picture that no sampling can explain.
+//! Finds errors in a picture that sampling cannot explain.
 
 use glam::DVec3;
 
@@ -9,25 +9,26 @@ use super::{moments::range, prediction::Prediction};
 pub const DEVIATIONS: f64 = 5.0;
 
 /// Greatest difference, in 8-bit steps, that is ignored in a pixel that should show one colour.
-/// Rounding causes up to half a step. A quarter of a step is added, because programs decode colours
-/// in slightly different ways.
+/// Rounding causes differences of up to half a step. Another quarter of a step is allowed, because
+/// programs decode colours in slightly different ways.
 pub const WRONG: f64 = 0.75;
 
-/// Number of pixels of a JPEG's block. The errors of these pixels depend on each other, so a block
-/// has only one independent error, not 64.
+/// Number of pixels in a block of a JPEG. Coding errors of these pixels depend on each other, so
+/// they are counted as one independent error instead of 64.
 const PIXELS_PER_BLOCK: f64 = 64.0;
 
-/// Errors of a picture that no sampling can explain, if a hypothesis about the program is correct.
+/// Errors that a hypothesis about the program leaves in a picture, and that sampling cannot
+/// explain.
 #[derive(Debug, Default)]
 pub struct Strays {
-    /// Indices of the pixels that should show one colour and show another one. Edges that are
-    /// displaced by half a pixel cannot explain the difference.
+    /// Indices of the pixels that should show one colour, but show a different one. Pixels are not
+    /// included if an edge that is displaced by half a pixel can explain the difference.
     pub pixels: Vec<usize>,
     /// Sum of the squared differences of the pixels in `pixels`.
     square: f64,
-    /// Pixels that should mix several colours. An entry contains the pixel's index, the part of its
-    /// squared error that neither rounding nor the uncertainty of the predicted mean can explain,
-    /// and the expected variance of one sample.
+    /// Pixels that should mix several colours. An entry contains three values. The first is the
+    /// pixel's index. The second is the part of its squared error that rounding and the variance of
+    /// the predicted mean cannot explain. The third is the expected variance of one sample.
     edges: Vec<(usize, f64, f64)>,
 }
 
@@ -41,8 +42,9 @@ impl Strays {
         self.square + beyond.max(0.0)
     }
 
-    /// Returns whether at most `missed` of the pixels that should show one colour are wrong, and
-    /// the errors of pixels that mix several colours may be noise.
+    /// Returns whether sampling may explain all errors, except for `missed` pixels: at most
+    /// `missed` of the pixels that should show one colour are wrong, and the errors of pixels that
+    /// mix several colours may be noise.
     pub fn are_no_more(&self, missed: usize) -> bool {
         let sum = |(squares, expected), edge: &(_, f64, f64)| (squares + edge.1, expected + edge.2);
         self.pixels.len() <= missed && is_noise(self.edges.iter().fold((0.0, 0.0), sum))
@@ -70,13 +72,13 @@ impl Strays {
 /// Returns whether sampling may explain a sum of squared errors. `expected` is the mean of this sum
 /// if the errors come from sampling.
 fn is_noise((squares, expected): (f64, f64)) -> bool {
-    // Light is at most 1, so the squared error of a pixel, summed over three channels, never
-    // exceeds 3. Therefore its variance is at most three times its expected value.
+    // Light is at most 1, so the squared error of a pixel, summed over three channels, is at most
+    // 3. Therefore the variance of the squared error is at most three times its expected value.
     squares - expected <= DEVIATIONS * libm::sqrt(3.0 * expected)
 }
 
 impl Prediction<'_> {
-    /// Finds the errors that no sampling can explain.
+    /// Finds the errors of the picture that sampling cannot explain.
     pub fn strays(&self) -> Strays {
         let mut strays = Strays::default();
         for at in 0..self.observed.len() {
@@ -97,9 +99,9 @@ impl Prediction<'_> {
         strays
     }
 
-    /// Returns whether the pixels of a group in a JPEG are too bright or too dark on average. Only
-    /// pixels that should show one colour are compared. `groups` contains the group of each pixel.
-    /// JPEG coding may change single pixels a lot, but it hardly changes their mean.
+    /// Returns whether the pixels of some group in a JPEG are too bright or too dark on average.
+    /// JPEG coding may change single pixels a lot, but it hardly changes their mean. Only pixels
+    /// that should show one colour are compared. `groups` contains the index of each pixel's group.
     pub fn is_tinted(&self, groups: &[usize]) -> bool {
         let all = groups.iter().max().map_or(0, |most| most + 1);
         // For each group, the sum of the differences divided by their variances, and the sum of the
@@ -120,19 +122,19 @@ impl Prediction<'_> {
         sums.iter().any(is_beyond)
     }
 
-    /// Returns how much the light of a pixel may change if edges move by half a pixel, for each
-    /// channel. An edge that enters the pixel this far changes it by half the difference of the
+    /// Returns for each channel how much the light of a pixel may change if edges move by half a
+    /// pixel. An edge that moves this far into the pixel changes it by half the difference of the
     /// colours on its two sides. So the result is half the range of the means of the pixel and its
-    /// neighbours. The greatest standard deviation of one sample in these pixels is used instead if
-    /// it is greater.
+    /// neighbours. If the greatest standard deviation of one sample in these pixels is greater, it
+    /// is returned instead.
     fn reach(&self, at: usize) -> DVec3 {
         let [least, most] = range(&self.moments.mean, self.width, at, 1);
         let [_, variance] = range(&self.moments.variance, self.width, at, 1);
         ((most - least) / 2.0).max(variance.map(f64::sqrt))
     }
 
-    /// Returns the greatest difference of a pixel that rounding and the uncertainty of the
-    /// predicted mean can explain, for each channel.
+    /// Returns for each channel the greatest difference of a pixel that rounding and the variance
+    /// of the predicted mean can explain.
     fn allowed(&self, at: usize) -> DVec3 {
         WRONG * self.steps(at) + DEVIATIONS * self.moments.mean_variance[at].map(f64::sqrt)
     }

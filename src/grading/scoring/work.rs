@@ -1,7 +1,7 @@
 //! The budget of work for judging a picture.
 //!
-//! Work is counted, not timed, so that a picture always gets the same verdict. The unit is the one
-//! by which the exact renderer counts its work, about 30 ns.
+//! Work is counted instead of timed, so that a picture always gets the same verdict. The unit is
+//! that of the exact renderer ([`Integrator`]), about 30 ns.
 
 use std::{cell::Cell, sync::atomic::AtomicBool};
 
@@ -10,12 +10,12 @@ use crate::{
     area::Area, exact::Integrator, grading::hypotheses::Curve, scene::Scene, tracer::World,
 };
 
-/// Units of work that are allowed for a picture, in addition to those for each pixel (`PIXEL`). A
-/// unit is about 30 ns. By measurement, a picture of 320 × 180 pixels takes at most about 3 s,
-/// which is enough to find two mistakes in four objects. A picture of 1280 × 720 pixels takes at
-/// most about 4 s.
+/// Work that is allowed for a picture, in units of about 30 ns, in addition to the work for each
+/// pixel ([`PIXEL`]). By measurement, judging a picture of 320 × 180 pixels then takes at most
+/// about 3 s, which is enough to find two mistakes in four objects. A picture of 1280 × 720 pixels
+/// takes at most about 4 s.
 const PICTURE: f64 = 9.6e7;
-/// Units of work (about 30 ns each) that are allowed for each pixel of a picture, because large
+/// Work that is allowed for each pixel of a picture, in units of about 30 ns, because large
 /// pictures take longer to compare. With a larger value, more mistakes are found, but judging takes
 /// longer.
 const PIXEL: f64 = 41.0;
@@ -46,20 +46,20 @@ pub const TOLERANCE: f64 = 1e-6;
 pub struct Work<'a> {
     spent: Cell<f64>,
     limit: Cell<f64>,
-    /// Whether something was left undone because the limit was reached.
+    /// Whether the judgement was cut short because the limit was reached.
     is_cut: Cell<bool>,
     pub cancel: &'a AtomicBool,
 }
 
-/// Returns the work of an exact picture. `units` is the work that the exact renderer counted
-/// itself.
+/// Returns the work of computing an exact picture. `units` is the work that the exact renderer
+/// counted, to which the work of preparing objects and storing pixels is added.
 pub fn of_exact(units: u64, objects: usize, pixels: usize) -> f64 {
     units as f64 + WORLD_OBJECT * objects as f64 + CELL * pixels as f64
 }
 
 impl<'a> Work<'a> {
-    /// Creates the budget for judging a picture. `effort` multiplies its limit. `spent` is the work
-    /// that was spent before, on the exact picture.
+    /// Creates the budget of work for judging a picture of `pixels` pixels. `effort` is a factor of
+    /// the limit. `spent` is the work that was already spent on the exact picture.
     pub fn new(pixels: u64, spent: f64, effort: f64, cancel: &'a AtomicBool) -> Self {
         Self {
             spent: Cell::new(spent),
@@ -69,21 +69,21 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// Adds to the work that was spent.
+    /// Adds `work` to the work that was spent.
     pub fn spend(&self, work: f64) {
         self.spent.set(self.spent.get() + work);
     }
 
-    /// Returns whether the limit on work is not yet reached. If it is reached, records that
-    /// something was left undone.
+    /// Returns whether work may go on, i.e. whether the limit is not reached. If it is reached,
+    /// records that the judgement was cut short.
     pub fn may_go_on(&self) -> bool {
         let may = self.remaining() > 0.0;
         self.is_cut.set(self.is_cut.get() || !may);
         may
     }
 
-    /// Returns `None` if the limit on work is reached. In that case, records that something was
-    /// left undone.
+    /// Returns `None` if the limit on work is reached. In this case, records that the judgement was
+    /// cut short.
     pub fn check(&self) -> Option<()> {
         self.may_go_on().then_some(())
     }
@@ -105,8 +105,8 @@ impl<'a> Work<'a> {
         (self.limit.get() - self.spent.get()).max(0.0)
     }
 
-    /// Computes the exact means and variances of a part of a scene's picture. Returns `None` if the
-    /// work is cancelled or exceeds its limit.
+    /// Computes the exact means and variances of the pixels in the area `part` of a scene's
+    /// picture. Returns `None` if the work is cancelled or exceeds its limit.
     pub fn exact_moments(&self, scene: &Scene, decoding: Curve, part: Area) -> Option<Moments> {
         let world = World::new_unless(scene, self.cancel).ok()?;
         let integrator = Integrator::for_values(&world, numbers(decoding))
@@ -121,8 +121,8 @@ impl<'a> Work<'a> {
         Some(Moments::exact(pixels?.iter().map(moments)))
     }
 
-    /// Spends the work of sampling a part of a picture. If this would exceed the limit, spends only
-    /// the rest of the budget and returns `None`.
+    /// Spends the work of sampling the area `part` of a picture. If the work would exceed the
+    /// limit, spends only what is left of the budget, and returns `None`.
     pub fn pay_for_samples(&self, objects: usize, samples: usize, part: Area) -> Option<()> {
         let (objects, cells) = (objects as f64, part.pixels() as f64);
         let rays = samples as f64 * cells;

@@ -1,10 +1,10 @@
-//! Tests whether one more mistake, which is visible only at edges, makes a hypothesis explain the
-//! picture.
+//! Tests whether a hypothesis explains the picture if a mistake is added that is visible only at
+//! edges.
 //!
 //! In: a hypothesis about the program that is close to the picture. Out: the hypothesis, perhaps
-//! with one more mistake, if it explains the picture. The mistake may be a row of the table that is
-//! visible only at edges, a shift of all samples, or a wrong pixel width. A row predicts a change
-//! of the picture, and is accepted only if this change is observed in the pixels.
+//! with one more mistake, if it explains the picture. The added mistake may be a row of the table
+//! of mistakes, a shift of all samples, or a wrong pixel width. A row predicts a change of the
+//! picture. The row is accepted only if this change is observed in the pixels.
 
 use std::sync::Arc;
 
@@ -16,35 +16,34 @@ use crate::grading::hypotheses::{
     Behaviour, Candidate, Mistake, MistakeRow, OBJECT_ROWS, ROWS, Shows,
 };
 
-/// Maximum number of rounds in which numbers are fitted to a grid of high resolution. A few are
-/// enough, because the numbers were fitted to a coarser grid before.
+/// Maximum number of rounds in which numbers are fitted to a grid of high resolution. A few rounds
+/// are enough, because the numbers were fitted to a coarser grid before.
 pub const ROUNDS: usize = 4;
 
-/// Tolerance of the observed fraction of a change. A mistake at edges predicts a change of the
-/// picture, and the picture shows a fraction of this change. The mistake is named only if the
-/// fraction is 1 ± 0.3, i.e. if about the whole change is observed. With a larger tolerance,
-/// mistakes with a similar effect would be confused.
+/// Tolerance of the observed fraction of a predicted change. A mistake predicts a change at edges,
+/// and the picture shows a fraction of this change. The mistake is named only if the fraction is 1
+/// ± 0.3, i.e. if about the whole change is observed. With a larger tolerance, mistakes with
+/// similar effects would be confused.
 const SHARE_TOLERANCE: f64 = 0.3;
-/// Minimum significance of an observed change, in standard deviations. A mistake at edges predicts
-/// a change of the picture, and the picture shows a fraction of this change. The mistake is named
-/// only if the fraction exceeds 0 by this many standard deviations, because then chance is
-/// negligible.
+/// Minimum significance of an observed change, in standard deviations. A mistake predicts a change
+/// at edges, and the picture shows a fraction of this change. The mistake is named only if the
+/// fraction exceeds 0 by this many standard deviations, so that it is not chance.
 const SURE: f64 = 7.0;
-/// Maximum squared difference between a JPEG and the prediction with a mistake at edges, as a
-/// fraction of the squared difference without this mistake. If more is left, the mistake is not
-/// named, because it explains only a part of the difference.
+/// Maximum fraction of the squared difference between a JPEG and its prediction that a mistake at
+/// edges may leave. If more is left, the mistake is not named, because it explains only a part of
+/// the difference.
 const LEFT_IN_CODED: f64 = 0.25;
 
 /// Identifiers of the mistakes that move samples by a few pixels at most.
 const SHIFT_IDS: [&str; 2] = ["half_pixel", "window_one_less"];
 
-/// Identifier of the only mistake at edges that can be recognised in a JPEG. A program with this
-/// mistake encodes samples before it averages them.
+/// Identifier of the only mistake at edges that can be recognised in a JPEG: the program averages
+/// encoded samples instead of light.
 const CODED_ID: &str = "averaged_encoded";
 
 /// Maximum fraction of the squared difference between the picture and its prediction that a wrong
-/// pixel width may leave. Noise is subtracted first. If the width leaves more, it is not named:
-/// another mistake at edges may merely look like a slight blur.
+/// pixel width may leave. Noise is subtracted first. If the width leaves more, it is not named,
+/// because another mistake at edges may look like a slight blur.
 const LEFT_BY_FILTER: f64 = 0.5;
 
 /// Maximum ratio of two squared errors on the grid `middle`: with a mistake that is weakly visible
@@ -52,46 +51,46 @@ const LEFT_BY_FILTER: f64 = 0.5;
 /// because it explains only a part of the error.
 const LEFT_BY_ROW: f64 = 0.5;
 
-/// Factors by which an estimated pixel width greater than 1 is multiplied. The most likely of the
-/// products is used as the width. More factors would find the width more precisely, but take
-/// longer.
+/// Factors by which an estimated pixel width greater than 1 is multiplied. All products are tried,
+/// and the most likely one is used as the width. With more factors, the width would be more
+/// precise, but the search would take longer.
 const WIDTHS: [f64; 4] = [0.7, 0.8, 0.9, 1.0];
-/// Least width of pixels that are reported as too wide, in pixels. A smaller estimate is raised to
-/// it, so that it differs from the correct width, 1.
+/// Least pixel width that is reported as too wide, in pixels. Smaller estimates are raised to this
+/// value, so that they differ from the correct width, 1.
 const LEAST_WIDE: f64 = 1.1;
-/// Widths, in pixels, that are tried for pixels that are too narrow. The most likely width is used.
-/// A few values suffice, because edges determine a narrow width only roughly.
+/// Pixel widths, in pixels, that are tried if pixels are too narrow. The most likely one is used. A
+/// few values suffice, because the edges in a picture determine a narrow width only roughly.
 const NARROW_WIDTHS: [f64; 3] = [0.25, 0.5, 0.7];
 
 /// Maximum difference between the estimated shift of all edges in the picture and the shift that a
-/// mistake causes. If the difference is greater, the mistake is not tried. The unit is a pixel; for
-/// a shift of more than a pixel, the difference is relative to the shift.
+/// mistake causes. If the difference is greater, the mistake is not tried. The unit is a pixel. If
+/// the mistake shifts by more than a pixel, the difference is divided by this shift.
 const MAX_SHIFT_ERROR: f64 = 0.5;
 
-/// Threshold of a shift of all samples in x and in y, in pixels. A smaller shift is tried as a
-/// mistake of its own, even if no row of the table of mistakes causes it. If all pixels use the
-/// same four random sample positions, the mean of these is shifted by less than this in each
-/// direction with a probability of more than 95 %.
+/// Threshold of a shift of all samples along x and along y, in pixels. A smaller shift is tried as
+/// a mistake of its own, even if no row of the table of mistakes causes it. Such shifts occur if
+/// all pixels use the same few random sample positions. With four positions, their mean is shifted
+/// by less than the threshold in each direction with a probability of more than 95 %.
 const MAX_SLIGHT_SHIFT: f64 = 0.35;
 
-/// Maximum number of mistakes that are tried to explain a shift of all edges. Mistakes that cause
-/// the most similar shift are tried first. A larger number takes longer, and adds only mistakes
-/// that explain the shift less well.
+/// Maximum number of mistakes that are tried to explain a shift of all edges. The mistakes with the
+/// most similar shifts are tried. More mistakes would take longer, and explain the shift less well.
 const SHIFTS: usize = 4;
 
-/// Minimum significance of a change that is observed on the coarsest grid, in standard deviations.
-/// A mistake predicts a change of the picture, and the picture shows a fraction of this change. The
-/// mistake is tested on single pixels if the fraction exceeds 0 by more than this, and also exceeds
-/// [`HINTED_SHARE`]. The value is low, because the test on single pixels decides.
+/// Minimum significance of a change on the coarsest grid, in standard deviations. A mistake
+/// predicts a change of the picture, and the picture shows a fraction of this change. If the
+/// fraction exceeds 0 by more than this many standard deviations, and also exceeds
+/// [`HINTED_SHARE`], the mistake is tested on single pixels. That test decides, so the value may be
+/// low.
 const HINTED: f64 = 3.0;
-/// Minimum fraction of a predicted change that the coarsest grid shows. A mistake predicts a change
-/// of the picture, and is tested on single pixels if the picture shows a larger fraction of this
-/// change, with the significance [`HINTED`]. The value is low, because the test on single pixels
-/// decides.
+/// Minimum fraction of a predicted change that the picture must show on the coarsest grid. A
+/// mistake predicts a change of the picture. If the picture shows a larger fraction of this change,
+/// with the significance [`HINTED`], the mistake is tested on single pixels. That test decides, so
+/// the value may be low.
 const HINTED_SHARE: f64 = 0.3;
 
-/// Returns a hypothesis that explains the picture: `candidate` itself, or `candidate` with a
-/// mistake at edges or a wrong pixel width added. Returns `None` if none of these explains it.
+/// Returns a hypothesis that explains the picture: `candidate` itself, or `candidate` with one more
+/// mistake, which is visible only at edges. Returns `None` if none of these explains the picture.
 pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
     let edges = judge.central_crop();
     // The hypothesis is tested even if the budget of work is used up, because it may explain the
@@ -108,14 +107,14 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
     let rows = ROWS.iter().filter(|row| match row.shows {
         Shows::InAreas => false,
         Shows::AtEdges if SHIFT_IDS.contains(&row.id) => false,
-        // If the program traces rays wrongly so that edges move, its picture is only estimated from
-        // samples. This is too inexact for a test at edges.
+        // If the program traces rays so that edges move, its picture is estimated from samples,
+        // which is too inexact for a test at edges.
         Shows::AtEdges => {
             let may = may || candidate.keeps_light() && row.id == CODED_ID;
             may && residual.is_at_edges && candidate.behaviour.is_in_place()
         }
-        // Truncated bytes and wrong encodings are visible in whole areas, so they are tried even
-        // if the wrong pixels do not lie at edges, but only if they explain much of the error.
+        // Mistakes such as truncated bytes are visible in whole areas. So they are tried even if
+        // the wrong pixels do not lie at edges, but only if they explain much of the error.
         Shows::Everywhere => {
             let is_likely = || explains_much(judge, candidate, Mistake::Row(row, None));
             may && !residual.are_areas_right && is_likely() == Some(true)
@@ -132,8 +131,8 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
     let is_shifted = candidate.behaviour.is_shifted();
     let by = residual.displacement.filter(|_| !is_shifted);
     let rows = rows.chain(by.into_iter().flat_map(|off| shifts(candidate, off.by)));
-    // If all edges are shifted by a part of a pixel, the usual cause is that the samples are not
-    // centred in their pixels; a slightly wrong number of the scene is less likely. So the shift
+    // If all edges are shifted by less than `MAX_SLIGHT_SHIFT`, the samples are probably not
+    // centred in their pixels. A slightly wrong number of the scene is less likely. So the shift
     // itself is tried as a mistake.
     let is_slight = |by: &[f64; 2]| by[0].abs().max(by[1].abs()) < MAX_SLIGHT_SHIFT;
     let slight = by.map(|off| off.by.map(|length| (100.0 * length).round() / 100.0));
@@ -150,8 +149,8 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
         let rendering = edges.render(&with, &judge.work)?;
         let [part, deviations] = predicted.observed_share(&null.score, &edges.predict(&rendering));
         let is_clear = if is_coded {
-            // JPEG coding blurs and weakens the predicted change, so only the remaining difference
-            // is tested.
+            // JPEG coding blurs and weakens the predicted change. So the test is only that the
+            // mistake reduces the difference from the picture enough.
             let with = judge.judged(&with, edges)?;
             with.score.squares < LEFT_IN_CODED * null.score.squares
         } else {
@@ -189,15 +188,16 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
         .or_else(|| residual.is_noise().then(|| candidate.clone()))
 }
 
-/// Returns whether a mistake reduces the error on the grid `middle` to at most [`LEFT_BY_ROW`].
-/// Returns `None` if the mistake is impossible, or if the budget of work is used up.
+/// Returns whether a mistake reduces the squared error on the grid `middle` to at most a fraction
+/// [`LEFT_BY_ROW`] of its value. Returns `None` if the mistake is impossible, or if the budget of
+/// work is used up.
 fn explains_much(judge: &Judge, candidate: &Candidate, mistake: Mistake) -> Option<bool> {
     let after = judge.square(&candidate.with(mistake)?)?;
     Some(after <= LEFT_BY_ROW * judge.square(candidate)?)
 }
 
-/// Returns the mistakes that shift samples by about `by` pixels to the right and down. The mistake
-/// with the most similar shift comes first.
+/// Returns the mistakes that shift samples by about `by`, given in pixels to the right and down.
+/// The mistake with the most similar shift comes first.
 fn shifts(candidate: &Candidate, by: [f64; 2]) -> Vec<Mistake> {
     let rows = ROWS.iter().filter(|row| SHIFT_IDS.contains(&row.id));
     let by = candidate.layout.source_direction(by);
@@ -215,8 +215,8 @@ fn shifts(candidate: &Candidate, by: [f64; 2]) -> Vec<Mistake> {
     near.map(|(_, mistake)| mistake).collect()
 }
 
-/// Returns a hypothesis if it explains the picture, either with its present numbers or after these
-/// are fitted again. Otherwise returns `None`.
+/// Returns the hypothesis `with` if it explains the picture. If it does not, fits its numbers
+/// again, and returns the result if that explains the picture. Otherwise returns `None`.
 fn fitted_with(judge: &Judge, with: Candidate) -> Option<Candidate> {
     if judge.explains(&with) {
         return Some(with);
@@ -229,9 +229,9 @@ fn fitted_with(judge: &Judge, with: Candidate) -> Option<Candidate> {
     judge.explains(&short).then_some(short)
 }
 
-/// Returns the mistakes that the coarsest grid hints at. They are of interest even if a correct
-/// program seems to explain the picture: if most pixels mix several colours, the effect of a
-/// mistake may look like noise.
+/// Returns the mistakes whose effects seem to be visible on the coarsest grid. They are tried even
+/// if a correct program seems to explain the picture. If most pixels mix several colours, the
+/// effect of a mistake may look like noise in single pixels.
 fn hinted(judge: &Judge, candidate: &Candidate) -> Vec<Mistake> {
     let hinted = || {
         let tiny = judge.tiny(candidate)?;
@@ -252,7 +252,7 @@ fn hinted(judge: &Judge, candidate: &Candidate) -> Vec<Mistake> {
 }
 
 /// Iterates over the rows of the table of mistakes that are visible in areas of one colour, and
-/// over exchanges of two objects' colours. A row about a single object is repeated for each of
+/// over exchanges of the colours of two objects. A row about a single object is tried for each of
 /// `objects`.
 pub fn rows_in_areas(objects: &[usize]) -> impl Iterator<Item = Mistake> {
     let rows = ROWS.iter().filter(|row| row.shows == Shows::InAreas);
@@ -265,9 +265,9 @@ pub fn rows_in_areas(objects: &[usize]) -> impl Iterator<Item = Mistake> {
         pairs.flat_map(|(at, &one)| objects[at + 1..].iter().map(move |&other| (one, other)));
     let exchanged =
         pairs.map(|(one, other)| Mistake::ColorsExchanged(one.min(other), one.max(other)));
-    // The order matters: if several mistakes change the picture in the same way, the caller keeps
-    // the first. For example, a missing object comes before a wrong formula by which the object is
-    // never hit, because it is more usual.
+    // If several mistakes change the picture in the same way, the caller keeps the first, so usual
+    // mistakes come first. For example, a missing object comes before a wrong formula by which the
+    // object is never hit.
     of_objects
         .chain(exchanged)
         .chain(rows.map(|row| Mistake::Row(row, None)))

@@ -1,9 +1,9 @@
-//! Forward selection with a beam: extends the few best sets of mistakes by one mistake at a time,
-//! until a set explains the picture.
+//! Searches for mistakes by forward selection with a beam: the few best sets of mistakes are
+//! extended by one mistake at a time, until a set explains the picture.
 //!
-//! The coarsest grid (`tiny`) selects the sets that are worth examining. Their numbers are fitted
-//! to the grid `coarse`, and also to the grid `middle` if little error remains. Sets are judged on
-//! the grid `middle`. Mistakes that are visible only at edges are judged on single pixels.
+//! On the coarsest grid (`tiny`), promising sets are selected. Their numbers are fitted on a finer
+//! grid (`coarse`) and, if little error remains, on the next finer grid (`middle`), where sets are
+//! judged. Mistakes that are visible only at edges are judged on single pixels.
 
 use std::collections::BTreeSet;
 
@@ -27,57 +27,57 @@ use crate::{
 /// further mistake takes another round of the search, so a larger number takes longer.
 pub const MAX_MISTAKES: usize = 3;
 
-/// Maximum number of sets of each size that are examined and extended. A wider beam finds more
-/// mistakes, at proportionally more work.
+/// Maximum number of sets of mistakes of one size that are examined and extended. With a wider
+/// beam, the search finds more mistakes, but needs proportionally more work.
 const BEAM_WIDTH: usize = 6;
 
 /// Factor by which a set's difference from the picture is multiplied, once for each of its
-/// mistakes. So a larger set must explain more. With a smaller factor, sets would get mistakes that
-/// explain nothing; with a larger one, mistakes with a small effect would be missed.
+/// mistakes. With a smaller factor, sets would get mistakes that explain nothing. With a larger
+/// one, mistakes with small effects would be missed.
 const MISTAKE_PENALTY: f64 = 1.05;
 /// Factor by which a set's difference from the picture is multiplied, once for each parameter of
 /// its mistakes. So a set with more parameters must explain more. With a smaller factor, wrong
-/// numbers would be preferred to simpler mistakes; with a larger one, they would be missed.
+/// numbers would be preferred to simpler mistakes. With a larger one, wrong numbers would be
+/// missed.
 const NUMBER_PENALTY: f64 = 1.03;
 
-/// Maximum number of mistakes for which an exact picture is rendered. They are selected by their
-/// difference from the picture on the coarsest grid, which is only sampled. Rendering exact
-/// pictures for all mistakes would double the time in which a single mistake is found.
+/// Maximum number of rows of the table of mistakes for which an exact picture is rendered. Rows
+/// with the least difference from the picture on the coarsest grid are chosen. With exact pictures
+/// for all rows, finding a single mistake would take twice as long.
 const EXACT_ROWS: usize = 32;
 
-/// Maximum number of sets that are examined because their mistakes may explain the picture only
-/// together. Those with the least difference from it come first. A larger number takes longer.
+/// Maximum number of sets from `joint` that are examined, i.e. of sets whose mistakes explain the
+/// picture only together. The best ones are chosen. A larger number takes longer.
 const JOINT_SETS: usize = 2;
 
 /// Threshold below which an extended set of mistakes is examined at once: its difference from the
-/// picture, divided by the difference before the extension. If the extended set explains the
-/// picture, no other kinds of mistakes are tried. With a larger threshold, more sets would be
-/// examined in vain.
+/// picture, divided by that of the set before the extension. If it explains the picture, no other
+/// kinds of mistakes are tried. With a larger threshold, more sets would be examined in vain.
 const PROMISING: f64 = 0.5;
 
 /// Threshold up to which a hypothesis is close to the student's picture: its squared difference
 /// from this picture, divided by that of a correct program. Differences that sampling can explain
-/// are ignored. Only close hypotheses are fitted completely, because this takes long.
+/// are ignored. Only close hypotheses are fitted completely, because complete fitting takes long.
 const NEAR_RATIO: f64 = 0.1;
 
-/// Maximum ratio of a hypothesis's squared difference from the student's picture to the least one
-/// so far. If the ratio is larger, the numbers of the hypothesis are not fitted further: it is
-/// unlikely to become the best, even with an added mistake at edges.
+/// Maximum squared difference of a hypothesis from the student's picture, divided by the least
+/// squared difference of all hypotheses so far. If the quotient is larger, the hypothesis's numbers
+/// are not fitted further, because it is unlikely to become the best.
 const WORSE: f64 = 4.0;
-/// Threshold up to which a hypothesis is always fitted further: its squared difference from the
+/// Threshold up to which [`WORSE`] does not apply: a hypothesis's squared difference from the
 /// student's picture, divided by that of a correct program. Without this threshold, a hypothesis
-/// without any difference would exclude all others from further fitting.
+/// with a difference of 0 would exclude all others from further fitting.
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// Maximum squared difference from the student's picture, divided by that of a correct program, at
 /// which a set of two mistakes is extended by a third. If two mistakes leave more than half of the
-/// difference, the picture most likely shows something else. Extending such sets in vain took a
-/// third of the time of judging a picture of another scene.
+/// difference, the picture most likely shows another scene. For a picture of another scene,
+/// extending such sets in vain took a third of the time.
 const EXTENDED: f64 = 0.5;
 
 /// Searches for the mistakes that explain a picture best. Tries sets of at most `most` mistakes,
-/// and adds a few that are visible only at edges. Returns the best hypothesis, i.e. set of
-/// mistakes, and whether it explains the picture.
+/// and adds a few that are visible only at edges. Returns the best set, as a hypothesis, and
+/// whether it explains the picture.
 pub fn run(judge: &Judge, most: usize) -> Result<Option<(Judged, bool)>, Cancelled> {
     let mut search = Search {
         judge,
@@ -130,8 +130,8 @@ struct Search<'a> {
     judge: &'a Judge<'a>,
     /// Hypotheses, i.e. sets of mistakes, that were examined so far.
     examined: Vec<Candidate>,
-    /// Sets of mistakes with completely fitted numbers that do not explain the picture, even with a
-    /// mistake at edges.
+    /// Sets of mistakes with completely fitted numbers that do not explain the picture, not even
+    /// with a further mistake at edges.
     completed: Vec<Vec<Mistake>>,
     /// Least squared difference from the student's picture for any hypothesis so far, divided by
     /// that of a correct program.
@@ -141,7 +141,8 @@ struct Search<'a> {
     /// Hypothesis with the least cost so far, and its cost; `None` at the start.
     nearest: Option<(f64, Candidate)>,
     /// Hypothesis that explains the picture, and its cost; `None` if none is known. If several
-    /// explain it, the one with the fewest parameters; if these are equal, the one of least cost.
+    /// hypotheses explain the picture, this is the one with the fewest parameters and, among these,
+    /// with the least cost.
     explained: Option<(f64, Candidate)>,
 }
 
@@ -184,8 +185,7 @@ impl Search<'_> {
                     }
                 }
             }
-            // If a promising set explains the picture, the others explain less than half of the
-            // difference from it, so they are not examined.
+            // If a set explains the picture, less promising sets need not be examined.
             if !self.is_explained_by(size) {
                 for (_, one) in least(next.into_iter(), BEAM_WIDTH - examined.len()) {
                     examined.extend(self.examine(&one));
@@ -194,8 +194,8 @@ impl Search<'_> {
             if let Some(best) = beam.first() {
                 self.refine(best, &mut examined);
             }
-            // An extra patch can explain anything, so it is tried last, and only if no other
-            // mistake explained the picture.
+            // A patch can explain almost any picture, so it is tried last, and only if no other
+            // mistake explains the picture.
             for from in beam {
                 if self.explained.is_none() {
                     let patched = patched(judge, &from);
@@ -224,16 +224,16 @@ impl Search<'_> {
         }
         judge.compare_with(best.candidate());
         for one in slightly_wrong(judge, best.candidate(), &suspects(judge, best)) {
-            // The set is examined even if one with the same mistakes but other numbers was examined
-            // before, because those numbers were fitted to few samples.
+            // A set with the same mistakes, but other numbers, may have been examined before. The
+            // set is examined nevertheless, because the other numbers were fitted to few samples.
             examined.extend(self.examine(&one));
         }
     }
 
     /// Returns whether the picture is explained by at most `size` mistakes, so that the search can
-    /// end. A larger set does not end it, because a single wrong number may explain the picture,
-    /// too. A program that intersects spheres wrongly does not end it either, because its picture
-    /// is only sampled, and may agree by chance.
+    /// end. The search goes on if a larger set explains the picture, because a single wrong number
+    /// may explain it, too. It also goes on if the program intersects spheres wrongly, because such
+    /// a picture is only sampled, and may agree by chance.
     fn is_explained_by(&self, size: usize) -> bool {
         let explained = self.explained.as_ref();
         explained.is_some_and(|(_, explained)| {
@@ -241,10 +241,10 @@ impl Search<'_> {
         })
     }
 
-    /// Returns whether a known hypothesis explains the picture with fewer parameters, or with as
-    /// many and at no greater cost. If the known hypothesis intersects spheres wrongly, mistakes
-    /// are counted instead of parameters. Otherwise, it would exclude a single wrong vector, which
-    /// has several parameters.
+    /// Returns whether a known hypothesis (`explained`) explains the picture with fewer parameters
+    /// than `candidate`, or with equally many and at most the cost `cost`. If the known program
+    /// intersects spheres wrongly, mistakes are counted instead of parameters. Otherwise, it would
+    /// exclude the mistake of a single wrong vector, which has several parameters.
     fn has_better(&self, candidate: &Candidate, cost: f64) -> bool {
         let explained = self.explained.as_ref();
         explained.is_some_and(|(least, explained)| {
@@ -260,8 +260,8 @@ impl Search<'_> {
     }
 
     /// Fits a hypothesis's numbers, and judges it on the grid `middle`. Remembers it if it has the
-    /// least cost so far, or explains the picture. Returns `None` if a better hypothesis explains
-    /// the picture already, or if the budget of work is used up.
+    /// least cost so far, or explains the picture. Returns `None` if a simpler hypothesis is known
+    /// to explain the picture, or if the budget of work is used up.
     fn examine(&mut self, candidate: &Candidate) -> Option<Judged> {
         let judge = self.judge;
         if self.has_better(candidate, f64::NEG_INFINITY) {
@@ -271,9 +271,9 @@ impl Search<'_> {
         let fitted = judge.fit_all(candidate, &judge.coarse, [2, 1]);
         let fitted = fitted.map_or_else(|| candidate.clone(), |(fitted, _)| fitted);
         let mut judged = judge.judged(&fitted, &judge.middle)?;
-        // A hypothesis whose difference is large, or much larger than another one's, is not fitted
-        // further. Nor is a program that traces rays wrongly without any visible effect: its
-        // picture is only sampled, which takes long.
+        // A hypothesis is not fitted further if its difference is large, or much larger than that
+        // of another one. The same holds if it traces rays wrongly and is no better than a correct
+        // program, because sampling its picture takes long.
         let left = left(judge, judged.candidate()).unwrap_or(f64::INFINITY);
         self.least_left = self.least_left.min(left);
         let most = NEAR_RATIO.min(f64::max(WORSE * self.least_left, NEGLIGIBLE));
@@ -283,12 +283,12 @@ impl Search<'_> {
             if let Some((fitted, _)) = judge.fit_all(judged.candidate(), level, [0, ROUNDS]) {
                 judged = judge.judged(&fitted, &judge.middle)?;
             }
-            // The hypothesis cannot become better than the one that explains the picture already.
+            // A better hypothesis explains the picture already.
             if self.has_better(judged.candidate(), judged.cost) {
                 return Some(judged);
             }
-            // Slightly wrong numbers leave errors at edges, which a mistake at edges would seem to
-            // explain. So the numbers are corrected before mistakes at edges are tried.
+            // Slightly wrong numbers leave errors at edges. A mistake at edges would seem to
+            // explain these errors, so the numbers are corrected before such mistakes are tried.
             let has_numbers = judged.candidate().numeric().next().is_some();
             let residual = || judge.residual(judged.candidate());
             if has_numbers && residual().is_some_and(|residual| residual.is_at_edges) {
@@ -314,12 +314,12 @@ impl Search<'_> {
     }
 }
 
-/// Returns whether a hypothetical program hits spheres by a wrong formula.
+/// Returns whether the program of a hypothesis intersects spheres by a wrong formula.
 fn hits_spheres_wrongly(candidate: &Candidate) -> bool {
     candidate.behaviour.spheres != Spheres::Correct
 }
 
-/// Adds an extra patch to a hypothesis. Returns `None` if the result does not explain the picture.
+/// Adds an extra area of one colour. Returns `None` if this does not explain the picture.
 fn patched(judge: &Judge, from: &Judged) -> Option<Candidate> {
     if !is_near(judge, from.candidate()) {
         return None;
@@ -328,14 +328,15 @@ fn patched(judge: &Judge, from: &Judged) -> Option<Candidate> {
     explained_with(judge, &patched)
 }
 
-/// Returns whether a hypothesis is close to the student's picture: it has no mistakes, or its
-/// squared difference is at most a tenth (`NEAR_RATIO`) of a correct program's.
+/// Returns whether a hypothesis is close to the student's picture: it has no mistakes, or leaves at
+/// most a tenth ([`NEAR_RATIO`]) of the squared difference of a correct program.
 fn is_near(judge: &Judge, candidate: &Candidate) -> bool {
     candidate.mistakes.is_empty() || left(judge, candidate).is_some_and(|left| left <= NEAR_RATIO)
 }
 
-/// Returns a hypothesis's squared difference from the student's picture, divided by a correct
-/// program's. Ignores what sampling can explain. Returns `None` if the budget of work is used up.
+/// Returns a hypothesis's squared difference from the student's picture, divided by that of a
+/// correct program. Ignores what sampling can explain. Returns `None` if the budget of work is used
+/// up.
 fn left(judge: &Judge, candidate: &Candidate) -> Option<f64> {
     let all = match judge.square_of_correct.get() {
         Some(all) => *all,
@@ -359,9 +360,8 @@ fn fewest(judge: &Judge, all: &Candidate) -> Candidate {
     };
     let mut fewest = all.clone();
     for left_out in (0..fewest.mistakes.len()).rev() {
-        // A mistake at edges was added only with certainty, so it is kept. A sole mistake is kept
-        // even if a correct program would explain the picture, because it was found by a more
-        // sensitive test.
+        // Mistakes at edges are kept, because they are certain. A single mistake is kept even if a
+        // correct program would explain the picture, because it was found by a more sensitive test.
         let is_sole = fewest.mistakes.len() == 1;
         if is_sole || fewest.mistakes.get(left_out).is_none_or(shows_at_edges) {
             continue;
@@ -369,8 +369,9 @@ fn fewest(judge: &Judge, all: &Candidate) -> Candidate {
         let Some(fewer) = without(&fewest, left_out) else {
             continue;
         };
-        // The removed mistake may have compensated for wrong numbers, so the numbers are fitted
-        // again. It may also have hidden a mistake at edges, so mistakes at edges are tried again.
+        // Without the removed mistake, other numbers may be better, so the numbers are fitted
+        // again. The removed mistake may also have hidden a mistake at edges, so mistakes at edges
+        // are tried again.
         let fitted = || {
             let (fitted, _) = judge.fit_all(&fewer, judge.fitting(&fewer), [0, ROUNDS])?;
             if !is_near(judge, &fitted) {
@@ -399,21 +400,20 @@ fn shows_at_edges(mistake: &Mistake) -> bool {
 /// Hypotheses, each with its difference from the picture on the coarsest grid.
 type Rated = Vec<(f64, Candidate)>;
 
-/// Extension of a set of mistakes by one more.
+/// Extends a set of mistakes by further mistakes.
 struct Extension<'a> {
     judge: &'a Judge<'a>,
     from: &'a Judged,
     tiny: Level<'a>,
     suspects: Vec<usize>,
-    /// Difference between the picture and the prediction from the mistakes in `from`, on the
-    /// coarsest grid (`tiny`). Only extensions with a smaller difference are improvements.
+    /// Difference between the picture and the prediction of `from`, on the coarsest grid (`tiny`).
+    /// Only extensions with a smaller difference are improvements.
     difference: f64,
 }
 
 impl<'a> Extension<'a> {
-    /// Functions that extend a set of mistakes, one function for each kind of mistakes. The
-    /// cheapest function comes first. Each returns hypotheses with their differences from the
-    /// picture on the coarsest grid.
+    /// Functions that extend a set of mistakes, one for each kind of mistakes, the fastest first.
+    /// Each returns hypotheses with their differences from the picture on the coarsest grid.
     const KINDS: [fn(&Self) -> Rated; 3] = [Self::rows, Self::numbers, Self::joint];
 
     /// Prepares the extension of a set of mistakes. Returns `None` if the budget of work is used
@@ -433,7 +433,7 @@ impl<'a> Extension<'a> {
 
     /// Returns the extensions of one kind whose difference from the picture is less than that of
     /// the set itself. Each comes with its difference, multiplied by the penalties for its mistakes
-    /// and parameters. The least difference comes first.
+    /// and parameters. They are sorted by this product.
     fn improvements(&self, kind: fn(&Self) -> Rated) -> Rated {
         let less = kind(self).into_iter().filter(|one| one.0 < self.difference);
         least(
@@ -451,8 +451,8 @@ impl<'a> Extension<'a> {
             return best_of_each_id(rows);
         }
         // The few samples of the coarsest grid cannot show where a checkerboard with small squares
-        // ends. So single mistakes are compared on an exact picture, too. Their differences on it
-        // are scaled, so that they can be compared with differences on the coarsest grid.
+        // ends. So single mistakes are also compared on the grid `coarse`, which is rendered
+        // exactly. Its differences are scaled to be comparable with those of the coarsest grid.
         let Some((exactly, _)) = judge.with_difference(candidate.clone(), &judge.coarse) else {
             return best_of_each_id(rows);
         };
@@ -477,9 +477,9 @@ impl<'a> Extension<'a> {
     }
 }
 
-/// Of the hypotheses whose last mistakes are rows of the table of mistakes with the same identifier
-/// and object, keeps only the one with the least difference from the picture. Otherwise, variants
-/// of one mistake would fill the beam.
+/// Keeps only the best of several variants of one mistake, so that the variants do not fill the
+/// beam. Hypotheses are variants if their last mistakes are rows of the table of mistakes with the
+/// same identifier and object. The best one has the least difference from the picture.
 fn best_of_each_id(rows: Rated) -> Rated {
     let mut known = BTreeSet::new();
     let mut best = least(rows.into_iter(), usize::MAX);
@@ -490,8 +490,8 @@ fn best_of_each_id(rows: Rated) -> Rated {
     best
 }
 
-/// Multiplies a hypothesis's difference from the picture by the penalties for its mistakes and
-/// parameters.
+/// Multiplies a hypothesis's difference from the picture by the penalties [`MISTAKE_PENALTY`] and
+/// [`NUMBER_PENALTY`].
 fn penalised(difference: f64, candidate: &Candidate) -> f64 {
     let [mistakes, numbers] =
         [candidate.mistakes.len(), candidate.parameter_count()].map(|count| count as f64);

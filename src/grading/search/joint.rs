@@ -1,9 +1,10 @@
-//! Finds mistakes that explain a picture only together. They are of four kinds: mistakes in the
-//! arrangement of pixels, the visible surfaces, the order of channels, and the encoding of light.
+//! Finds combinations of mistakes that explain a picture only together. The combined mistakes are
+//! of three kinds: mistakes that change what is seen, wrong arrangements of pixels, and effects on
+//! light, such as a wrong encoding or order of channels.
 //!
-//! One of them alone may explain nothing. For example, truncated squares of a checkerboard are not
-//! recognised in a picture that is upside down. So all combinations are tried on the coarsest grid,
-//! before any number is fitted.
+//! One mistake of a combination may explain nothing. For example, wrong squares of a checkerboard
+//! are not recognised in a picture that is also upside down. So combinations are tried on the
+//! coarsest grid, before any numbers are fitted.
 
 use super::{
     judge::{Judge, least},
@@ -14,22 +15,22 @@ use crate::grading::{
     scoring::{Level, Prediction},
 };
 
-/// Number of combinations of mistakes that are kept and combined with a second effect on light.
-/// Those with the least difference from the picture come first. A larger number takes longer.
+/// Number of combinations of mistakes that are extended by a second effect on light. Combinations
+/// with the least difference from the picture are chosen. A larger number takes longer.
 const BEST: usize = 8;
 
-/// Number of combinations of pixel arrangements and visible surfaces that are combined with effects
-/// on light. Those with the highest correlation with the picture come first. Combining all of them
-/// took most of the time of judging a wrong picture.
+/// Number of combinations without effects on light that are extended by such effects. Combinations
+/// with the highest correlation with the picture are chosen. When all were extended, this took most
+/// of the time of judging a wrong picture.
 const CORRELATED: usize = 32;
 
-/// Number by which the difference from the picture is divided, once for each mistake of a
-/// combination. So a further mistake must explain more than 5 % of the difference.
+/// Number by which a combination's difference from the picture is divided, once for each of its
+/// mistakes. So a further mistake must explain more than 5 % of the difference.
 const ROW_RATIO: f64 = 0.95;
 
 /// Returns how strongly observed and predicted light are correlated, from 0 to 1. The light of a
-/// cell is the sum of its channels. Effects on light hardly change the correlation. An inversion
-/// changes only its sign, so the absolute value is taken.
+/// cell is the sum of its channels. Effects on light hardly change this correlation. Inverted
+/// colours change only its sign, so the absolute value is returned.
 fn correlation(prediction: &Prediction) -> f64 {
     let mut sums = [0.0; 6];
     for (seen, mean) in prediction.observed.iter().zip(&prediction.moments.mean) {
@@ -45,11 +46,12 @@ fn correlation(prediction: &Prediction) -> f64 {
     covariance(ab, a, b).abs() / variances.sqrt().max(1e-12)
 }
 
-/// Returns combinations of several mistakes with small differences from the picture on the coarsest
-/// grid. Each comes with its difference.
+/// Returns the combinations of several mistakes with the least differences from the picture on the
+/// coarsest grid, `tiny`. Each comes with its difference.
 pub fn joint_rows(judge: &Judge, right: &Candidate, tiny: &Level) -> Vec<(f64, Candidate)> {
     let rows = ROWS.iter();
-    // JPEG coding hides weak mistakes, so they are not tried in a JPEG.
+    // Of the weakly visible mistakes, only one encoding is tried, and not in a JPEG, whose coding
+    // hides weak mistakes.
     let is_coded = judge.fine.jpeg.is_some();
     let rows = rows.filter(|row| match row.shows {
         Shows::InAreas => true,
@@ -76,8 +78,8 @@ pub fn joint_rows(judge: &Judge, right: &Candidate, tiny: &Level) -> Vec<(f64, C
     let left = |candidate: Candidate| {
         judge.work.check()?;
         let prediction = judge.predicted(&candidate, tiny)?;
-        // A prediction of one colour is skipped: pictures of one colour were handled before the
-        // search.
+        // A prediction of one colour is skipped, because pictures of one colour are judged before
+        // the search.
         let mean = &prediction.moments.mean;
         if mean.iter().all(|one| *one == mean[0]) {
             return None;
@@ -85,7 +87,8 @@ pub fn joint_rows(judge: &Judge, right: &Candidate, tiny: &Level) -> Vec<(f64, C
         let penalty = libm::pow(ROW_RATIO, candidate.mistakes.len() as f64);
         Some((absolute(&prediction.differences()) / penalty, candidate))
     };
-    // Visible surfaces are combined first, so that each scene is rendered only once.
+    // Mistakes that change what is seen are tried first, because each of them needs a new
+    // rendering. Combinations with other mistakes reuse this rendering.
     let seen = with(right, &seen).into_iter();
     let laid_out = seen.flat_map(|candidate| with(&candidate, &layout));
     let correlated = laid_out.filter_map(|candidate| {

@@ -1,17 +1,17 @@
 //! Fits the numbers of a model to a picture, first by least squares, then by a robust loss.
 //!
 //! The method is that of Levenberg and Marquardt (Marquardt, An algorithm for least-squares
-//! estimation of nonlinear parameters, 1963). Weights turn squares into absolute values
-//! (Schlossmacher, 1973), so that errors that the model cannot explain do not distort the fit.
-//! Derivatives are first found by varying each number. After each change of the numbers, the
-//! derivatives are updated (Broyden, A class of methods for solving nonlinear simultaneous
-//! equations, 1965).
+//! estimation of nonlinear parameters, 1963). For the robust loss, squared differences get weights
+//! by which they become absolute values (Schlossmacher, 1973). So errors that the model cannot
+//! explain do not distort the fit. Derivatives are first found by varying each number. After each
+//! change of the numbers, they are updated by Broyden's method (Broyden, A class of methods for
+//! solving nonlinear simultaneous equations, 1965).
 
 use crate::grading::scoring::solve;
 
-/// Largest move of a number at which the fit stops as converged. The unit is the change by which
-/// the number's derivative is found. With a smaller value, the fit takes more rounds; with a larger
-/// one, it may stop before the best numbers.
+/// Maximum change of a number in a round at which the fit is treated as converged. The unit is the
+/// step by which the number is varied to find its derivative. With a smaller value, the fit takes
+/// more rounds. With a larger one, it may stop before the numbers are best.
 const CLOSE: f64 = 0.05;
 
 /// The result of a fit.
@@ -21,9 +21,8 @@ pub struct Fitted {
     pub numbers: Vec<f64>,
     /// Sum of the absolute differences that remain.
     pub left: f64,
-    /// Standard deviation of each fitted number. It follows from the standard deviations of the
-    /// differences, which are an argument of [`fit`]. It is meaningful only after a round that
-    /// minimises Huber's loss.
+    /// Standard deviation of each fitted number. It is computed from the argument `deviations` of
+    /// [`fit`], and is meaningful only if a round minimised Huber's loss.
     pub errors: Vec<f64>,
 }
 
@@ -32,9 +31,9 @@ pub fn absolute(differences: &[f64]) -> f64 {
     differences.iter().map(|d| d.abs()).sum()
 }
 
-/// The function to minimise. It is the sum of squared differences; or, if standard deviations are
-/// given, Huber's loss, which is linear beyond one deviation (Huber, Robust estimation of a
-/// location parameter, 1964).
+/// The function that the fit minimises. Without standard deviations, it is the sum of squared
+/// differences. With standard deviations, it is Huber's loss, which is linear for differences of
+/// more than one standard deviation (Huber, Robust estimation of a location parameter, 1964).
 struct Loss(Option<Vec<f64>>);
 
 impl Loss {
@@ -52,15 +51,16 @@ impl Loss {
     }
 }
 
-/// Fits numbers to a picture. To find derivatives, each number is changed by its entry in `steps`.
-/// `trial` returns the differences of a model from the picture, given the model's numbers. It
-/// returns `None` for impossible numbers, and if the budget of work is used up.
+/// Fits the numbers of a model to a picture. `start` contains the numbers from which the fit
+/// starts. To find derivatives, each number is changed by its entry in `steps`. `trial` returns the
+/// differences between the model and the picture for given numbers. It returns `None` if the
+/// numbers are impossible, or if the budget of work is used up.
 ///
 /// First, the sum of squared differences is minimised, because it is less likely to have several
-/// minima. Then Huber's loss is minimised, in units of the standard deviations, so that errors that
-/// no numbers explain do not distort the fit. `rounds` contains two maximum numbers of rounds: for
-/// the squared differences, and for Huber's loss. Returns `None` if `trial` returns `None` for the
-/// numbers `start`.
+/// minima. Then Huber's loss is minimised, because large errors that no numbers can explain distort
+/// it less. The loss is in units of the standard deviations `deviations`. `rounds` contains the
+/// maximum numbers of rounds for the two losses. Returns `None` if `trial` returns `None` for
+/// `start`.
 pub fn fit(
     start: Vec<f64>,
     steps: &[f64],
@@ -111,8 +111,8 @@ pub fn fit(
             }
             let gradient: Vec<f64> = slopes.iter().map(|slope| -product(slope, &now)).collect();
             let (mut has_improved, mut is_far) = (false, None);
+            // Newly computed derivatives are used for up to four attempts, with growing damping.
             // Updated derivatives are inexact, so they are computed again after one failed attempt.
-            // New derivatives are kept for up to four attempts, with growing damping.
             let attempts = if are_new { 4 } else { 1 };
             for _ in 0..attempts {
                 let mut damped = normal.clone();
@@ -160,8 +160,8 @@ pub fn fit(
     })
 }
 
-/// Updates derivatives by the effect of a move, by Broyden's method. Varying each number again
-/// instead would take most of the time of a fit.
+/// Updates the derivatives by Broyden's method after the numbers were changed by `moves`. If each
+/// number were varied again instead, this would take most of the time of a fit.
 fn update(slopes: &mut [Vec<f64>], moves: &[f64], before: &[f64], after: &[f64]) {
     let square: f64 = moves.iter().map(|by| by * by).sum();
     for at in 0..before.len() {

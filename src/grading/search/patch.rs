@@ -1,4 +1,5 @@
-//! Finds an extra patch in a picture: an area of one colour that no object of the scene explains.
+//! Finds an extra patch in a picture, i.e. an area of one colour that no object of the scene
+//! explains.
 
 use glam::DVec2;
 
@@ -8,16 +9,16 @@ use crate::grading::hypotheses::{Mistake, is_near};
 /// Least number of pixels in a patch. Fewer may be noise.
 const SMALLEST: usize = 4;
 
-/// Least fraction of its bounding rectangle that a patch must fill. It keeps thin or scattered
-/// shapes from counting as a patch.
+/// Least fraction of its bounding rectangle that a patch must fill, so that thin or scattered areas
+/// do not count as patches.
 const FILLED: f64 = 0.25;
 /// Greatest fraction of the picture that a patch's bounding rectangle may cover. A larger patch
 /// would explain almost anything.
 const MOST: f64 = 0.2;
 
-/// Finds the largest connected area of one colour that a hypothesis does not explain. Returns
-/// `None` if the area is too small, too thin or too large, or has a colour of the scene. Also
-/// returns `None` if the hypothesis has a patch already.
+/// Finds the largest connected area of one colour that the hypothesis `from` does not explain.
+/// Returns `None` if the area is too small, too thin or too large, if it has a colour of the scene,
+/// or if the hypothesis has a patch already.
 pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
     let mut others = from.candidate().mistakes.iter();
     if others.any(|one| matches!(one, Mistake::Patch(..))) {
