@@ -88,7 +88,7 @@ impl<'a> Work<'a> {
         self.may_go_on().then_some(())
     }
 
-    /// Returns whether something was left undone because the limit was reached.
+    /// Returns whether the judgement was cut short because the limit was reached.
     pub fn is_cut(&self) -> bool {
         self.is_cut.get()
     }

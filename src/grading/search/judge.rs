@@ -1,4 +1,5 @@
-//! A picture that is judged: its resolutions, its budget of work, and the operations of the search.
+//! A picture that is judged, at several resolutions, with a budget of work. Contains the operations
+//! by which the search compares hypotheses with it.
 
 use std::{
     cell::{OnceCell, RefCell},
@@ -18,67 +19,69 @@ use crate::{
     tracer::World,
 };
 
-/// Number of cells along the longer side of the coarsest grid, on which mistakes are selected. A
-/// finer grid takes longer for each of hundreds of mistakes. A coarser one hides small objects.
+/// Number of cells along the longer side of the coarsest grid, on which promising mistakes are
+/// selected among hundreds. A finer grid takes longer for each mistake. A coarser one hides small
+/// objects.
 const TINY: u32 = 32;
 /// Number of cells along the longer side of the grid on which numbers are fitted first. A finer
 /// grid takes longer. A coarser one determines the numbers less well.
 const COARSE: u32 = 48;
 /// Number of cells along the longer side of the grid on which sets of mistakes are judged. A finer
 /// grid takes longer. A coarser one distinguishes similar mistakes less well. The final decision
-/// does not depend on it, because it is made on single pixels.
+/// does not depend on this grid, because it is made on single pixels.
 const MIDDLE: u32 = 96;
 
-/// Distance by which the picture should move, in cells, when a number is changed to find the
-/// derivative of the picture with respect to this number. The effect of a smaller movement is
-/// harder to measure. With a larger one, the picture's change is less proportional to the number's
-/// change.
+/// Distance, in cells, by which the picture should move when a number is varied to find the
+/// picture's derivative with respect to the number. The effect of a smaller movement is harder to
+/// measure. A larger movement makes the derivative less exact.
 pub const CELL_STEP: f64 = 0.25;
 
-/// Number of samples per cell of the coarsest grid, on which mistakes are selected. It is a
-/// Fibonacci number, because the samples form a Fibonacci lattice. More samples are less noisy, but
-/// take longer.
+/// Number of samples per cell of the coarsest grid, on which promising mistakes are selected. It is
+/// a Fibonacci number, because the samples form a Fibonacci lattice. With more samples, pictures
+/// are less noisy, but take longer.
 const SAMPLES: usize = 5;
 
-/// Number of pixels in the central crop of a picture, on which edges are judged. More pixels
-/// determine edges better, at proportionally more work.
+/// Number of pixels in the central crop of a picture, on which edges are judged. With more pixels,
+/// edges are determined better, but the work grows in proportion.
 const CENTRAL_PIXELS: u64 = 20_000;
 
-/// A picture at several resolutions, to which hypotheses about the program are compared.
+/// A picture at several resolutions, with which hypotheses about the program that made it are
+/// compared.
 pub struct Judge<'a> {
     pub scene: &'a Scene,
     tiny: Level<'a>,
     pub coarse: Level<'a>,
     pub middle: Level<'a>,
     pub fine: Level<'a>,
-    /// The central crop at full resolution; `None` if the picture has no more pixels than the crop.
+    /// The central crop at full resolution; `None` if the crop would be the whole picture.
     pub central: Option<Level<'a>>,
     pub work: Work<'a>,
     /// Residuals of the last few hypotheses. A hypothesis is identified by its mistakes.
     pub residuals: RefCell<VecDeque<(Vec<Mistake>, Residual)>>,
     /// Squared difference between the picture and that of a correct program, on the grid `middle`.
-    /// Errors that sampling can explain are ignored. The errors of hypotheses are divided by it.
-    /// Computed on demand.
+    /// Differences that sampling can explain are ignored. The squared differences of hypotheses are
+    /// divided by this value. Computed on demand.
     pub square_of_correct: OnceCell<f64>,
 }
 
-/// What a hypothesis leaves unexplained in the pixels of a picture.
+/// The differences between a picture and a hypothesis's prediction that remain in single pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Residual {
     /// Whether areas of one colour are right, and errors in all other pixels look like noise. If
-    /// the prediction was sampled, a few pixels in the areas may be wrong, because samples may have
-    /// missed a small detail.
+    /// the prediction was sampled, a few wrong pixels in the areas are ignored, because samples may
+    /// have missed small details.
     pub are_areas_right: bool,
     /// Whether almost all wrong pixels lie near edges.
     pub is_at_edges: bool,
-    /// Whether so many pixels of one colour are wrong that a mistake may be visible everywhere.
+    /// Whether so many pixels that should show one colour are wrong that a mistake may be visible
+    /// everywhere.
     pub is_much_wrong: bool,
     /// Whether errors in pixels that mix several colours look like sampling noise.
     pub is_noise_everywhere: bool,
-    /// Displacement of edges; `None` if it may be chance. Tested only if the wrong pixels lie near
+    /// Displacement of edges; `None` if it may be chance, or if the wrong pixels do not lie near
     /// edges.
     pub displacement: Option<Displacement>,
-    /// Width of the pixel filter, in pixels; `None` if it may be 1. Tested only if the wrong pixels
+    /// Width of the pixel filter, in pixels; `None` if it may be 1, or if the wrong pixels do not
     /// lie near edges.
     pub width: Option<f64>,
 }
@@ -93,13 +96,13 @@ impl Residual {
     }
 }
 
-/// A hypothesis about the program that was judged at one resolution.
+/// A hypothesis about the program, with its score at one resolution.
 pub struct Judged {
     /// Rendering of the hypothesis at this resolution.
     pub rendering: Arc<Rendering>,
     pub score: Score,
-    /// Cost of the hypothesis: the price of its parameters minus the logarithm of the picture's
-    /// likelihood. The hypothesis with the least cost is the best.
+    /// Cost of the hypothesis: the penalty for its parameters ([`price`]), minus the logarithm of
+    /// the picture's likelihood. The hypothesis with the least cost is the best.
     pub cost: f64,
 }
 
@@ -110,8 +113,8 @@ impl Judged {
 }
 
 impl<'a> Judge<'a> {
-    /// Prepares a picture for judging. `exact` is a correct program's rendering of the same part of
-    /// the scene.
+    /// Prepares a picture for judging. `exact` is the exact rendering by a correct program, in the
+    /// same rectangle of the scene's picture.
     pub fn new(
         scene: &'a Scene,
         exact: &Arc<Rendering>,
@@ -142,8 +145,9 @@ impl<'a> Judge<'a> {
         judge
     }
 
-    /// Returns the resolution at which numbers are fitted. It is the middle grid, or single pixels
-    /// if a curve is applied to light, because a curve of a mean is not the mean of the curve.
+    /// Returns the resolution at which numbers are fitted. Usually, this is the grid `middle`. If
+    /// the hypothesis applies a curve to light, single pixels are used, because a curve must be
+    /// applied to pixels before they are averaged over a cell.
     pub fn fitting(&self, candidate: &Candidate) -> &Level<'a> {
         let is_curve = |effect: &Effect| {
             matches!(
@@ -163,8 +167,8 @@ impl<'a> Judge<'a> {
         self.central.as_ref().unwrap_or(&self.fine)
     }
 
-    /// Makes a hypothesis the base of comparisons on the grids `coarse` and `middle`: later
-    /// hypotheses are rendered only where they differ from it.
+    /// Renders a hypothesis on the grids `coarse` and `middle`, so that later hypotheses are
+    /// rendered only where they differ from it.
     pub fn compare_with(&self, candidate: &Candidate) {
         for level in [&self.coarse, &self.middle] {
             if let Some(rendering) = level.render(candidate, &self.work) {
@@ -173,9 +177,9 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Returns the coarsest resolution of the picture, for comparisons with variants of a
+    /// Returns the picture at the coarsest resolution, for comparisons with variants of a
     /// hypothesis. All variants are sampled in the same way, so they have almost the same sampling
-    /// error. If the hypothesis can be rendered exactly, this error is computed and added to the
+    /// error. If the program traces rays correctly, this error is computed and added to the
     /// observed light, so that it cancels in comparisons. Returns `None` if the budget of work is
     /// used up.
     pub fn tiny(&self, candidate: &Candidate) -> Option<Level<'a>> {
@@ -199,14 +203,14 @@ impl<'a> Judge<'a> {
         Some(level.predict(&rendering))
     }
 
-    /// Returns the squared error that a hypothesis leaves on the grid `middle`, apart from what
-    /// sampling can explain. Returns `None` if the budget of work is used up.
+    /// Returns the squared difference that a hypothesis leaves on the grid `middle`. Differences
+    /// that sampling can explain are ignored. Returns `None` if the budget of work is used up.
     pub fn square(&self, candidate: &Candidate) -> Option<f64> {
         Some(self.predicted(candidate, &self.middle)?.strays().square())
     }
 
-    /// Returns the differences between the picture and a hypothesis's prediction at one resolution,
-    /// channel by channel. Returns `None` if the budget of work is used up.
+    /// Returns the differences between the picture and a hypothesis's prediction, for each channel
+    /// of each cell at one resolution. Returns `None` if the budget of work is used up.
     pub fn differences(&self, candidate: &Candidate, level: &Level) -> Option<Vec<f64>> {
         self.work.check()?;
         Some(self.predicted(candidate, level)?.differences())
@@ -220,9 +224,9 @@ impl<'a> Judge<'a> {
         Some((absolute(&differences), candidate))
     }
 
-    /// Returns for each cell of a grid the index of the object in its middle, or `None` for the
-    /// background. The hypothesis's scene is rendered correctly, and its pixels are then arranged
-    /// by `layout`. If the work is cancelled, all cells are `None`.
+    /// Returns for each cell of a grid the index of the object that is seen in its middle, or
+    /// `None` for the background. The hypothesis's scene is rendered by a correct program, and the
+    /// cells are then arranged by `layout`. If the work is cancelled, all cells are `None`.
     pub fn labels(&self, candidate: &Candidate, layout: Layout, grid: &Grid) -> Vec<Option<usize>> {
         let scene = candidate.drawn_correctly().drawn(grid);
         let Ok(world) = World::new_unless(&scene, self.work.cancel) else {
@@ -266,9 +270,9 @@ impl<'a> Judge<'a> {
     }
 
     /// Fits only the numbers of the mistake that was added last. `from` is the hypothesis without
-    /// this mistake, and `start` is the hypothesis with it. Returns the remaining difference and
-    /// the fitted hypothesis. Returns `None` if the numbers of `start` are impossible, or if the
-    /// budget of work is used up.
+    /// this mistake, and `start` is the hypothesis with it. Returns the remaining difference from
+    /// the picture and the fitted hypothesis. Returns `None` if the numbers of `start` are
+    /// impossible, or if the budget of work is used up.
     pub fn fit_last(
         &self,
         from: &Candidate,
@@ -282,11 +286,11 @@ impl<'a> Judge<'a> {
         Some((found.left, fitted))
     }
 
-    /// Fits the numbers at the indices `free` among all numbers of a hypothesis's mistakes. To find
-    /// derivatives, each number is varied so that the picture moves by about `cells` cells.
-    /// `rounds` contains two maximum numbers of rounds: for least squares, and then for a robust
-    /// loss. Returns `None` if the hypothesis's numbers are impossible, or if the budget of work is
-    /// used up.
+    /// Fits some numbers of a hypothesis's mistakes. `free` contains their indices among all its
+    /// numbers. To find derivatives, each number is varied so that the picture moves by about
+    /// `cells` cells. `rounds` contains two maximum numbers of rounds: for least squares, and then
+    /// for a robust loss. Returns `None` if the hypothesis's numbers are impossible, or if the
+    /// budget of work is used up.
     pub fn fit(
         &self,
         candidate: &Candidate,
@@ -313,16 +317,16 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// Returns the price of `fitted` parameters, which is part of a hypothesis's cost. A parameter has
-/// the price of half the logarithm of the number of cells. All cells of the whole picture are
-/// counted even if only a part of it is judged, because almost anything could be fitted to a few
-/// pixels.
+/// Returns the penalty for `fitted` parameters, which is part of a hypothesis's cost. It is half
+/// the logarithm of the number of cells for each parameter. All cells of the whole picture are
+/// counted even if only a crop is judged. With a small crop, the penalty would be so low that
+/// almost anything could be fitted to it.
 pub fn price(level: &Level, fitted: usize) -> f64 {
     let [width, height] = level.grid.size.map(f64::from);
     0.5 * fitted as f64 * libm::log(width * height)
 }
 
-/// Returns at most `most` items, those with the least keys first.
+/// Sorts items by their keys, the least first. Returns the first `most` of them.
 pub fn least<T>(all: impl Iterator<Item = (f64, T)>, most: usize) -> Vec<(f64, T)> {
     let mut all: Vec<_> = all.collect();
     all.sort_by(|one, other| one.0.total_cmp(&other.0));
@@ -330,8 +334,8 @@ pub fn least<T>(all: impl Iterator<Item = (f64, T)>, most: usize) -> Vec<(f64, T
     all
 }
 
-/// Returns the central crop of a part, which has the same aspect ratio. Returns `None` if the part
-/// has no more pixels than the crop.
+/// Returns the central crop of the rectangle `part`, with the same aspect ratio. Returns `None` if
+/// the rectangle has at most [`CENTRAL_PIXELS`] pixels.
 fn central(part: Area) -> Option<Area> {
     if part.pixels() <= CENTRAL_PIXELS {
         return None;

@@ -1,6 +1,7 @@
 //! Finds the numbers of a scene whose change explains a picture best.
 //!
-//! Many starting values are compared on the coarsest grid, and the best of them are fitted to it.
+//! Many starting values are compared with the picture on the coarsest grid. Starting from the best
+//! of them, the numbers are fitted on this grid.
 
 use std::collections::BTreeSet;
 
@@ -17,28 +18,29 @@ use crate::{
 };
 
 /// Number of starting values from which a field of the scene is fitted on the coarsest grid. The
-/// starting values with the least difference from the picture are used. More of them take longer,
-/// but a fit ends less often in a wrong minimum.
+/// starting values with the least difference from the picture are used. With more of them, the fit
+/// takes longer, but ends less often in a wrong minimum.
 const STARTS: usize = 2;
 
 /// Number of fields of the scene that are fitted on the coarsest grid. The fields whose starting
-/// values lead to the least difference from the picture come first. A larger number takes longer.
+/// values lead to the least difference from the picture are chosen. A larger number takes longer.
 const STARTED: usize = 12;
 
-/// Maximum number of objects that are suspected to be wrong. Those with the largest error in and
-/// beside them come first. The work of a search grows with this number.
+/// Maximum number of objects that are suspected to be wrong. The objects with the largest errors in
+/// their pixels and the pixels beside them are chosen. The work of a search grows with this number.
 const MAX_SUSPECTS: usize = 12;
 
-/// Threshold below which an object is not suspected to be wrong: the error of its pixels and their
-/// neighbours, divided by the same error of the worst object. Smaller errors are mostly noise.
+/// Threshold below which an object is not suspected to be wrong: the error of the object's pixels
+/// and their neighbours, divided by that of the worst object. Smaller errors are mostly noise.
 const SUSPECT_RATIO: f64 = 0.03;
 
-/// Factors by which slips of the hand multiply a number: a wrong sign, a double, a half, and a
-/// decimal point that is forgotten or moved.
+/// Factors by which a number is multiplied by typical slips: a wrong sign, doubling, halving, and a
+/// forgotten or moved decimal point.
 pub const SLIPS: [f64; 5] = [-1.0, 2.0, 0.5, 10.0, 0.1];
 
-/// Fits the fields of the scene that may be wrong to the coarsest grid. Returns hypotheses, i.e.
-/// sets of mistakes, with their differences from the picture on this grid.
+/// Extends a hypothesis by one field of the scene with wrong numbers, which are fitted on the
+/// coarsest grid, `tiny`. Returns the extended hypotheses with their differences from the picture
+/// on this grid.
 pub fn numeric_mistakes(
     judge: &Judge,
     from: &Judged,
@@ -70,8 +72,8 @@ pub fn numeric_mistakes(
     let started = least(started, STARTED).into_iter();
     let fitted = started.filter_map(|(_, (parameter, tried))| {
         let fit = |(left, start): (f64, Candidate)| {
-            // A colour was read from the picture, so it is not fitted, unless the program changes
-            // light.
+            // A colour was read from the picture, so it is not fitted. It is fitted only if the
+            // program changes light.
             if parameter.is_color() && candidate.effects.is_empty() {
                 return Some((left, start));
             }
@@ -83,19 +85,18 @@ pub fn numeric_mistakes(
 }
 
 /// Number of fields of the scene whose fit is continued after the first round. In the first round,
-/// every field that may be wrong is fitted on a grid of low resolution, starting from its present
-/// numbers. The fields with the least remaining difference from the picture are then fitted
-/// further. A larger number takes longer.
+/// [`slightly_wrong`] fits every field that may be wrong. Then only the fields with the least
+/// remaining difference from the picture are fitted further. A larger number takes longer.
 const NEAR_OWN: usize = 3;
 
-/// Fits each field of the camera and of checkerboards that may be wrong, except colours, starting
-/// from its present numbers. Returns the few best hypotheses that are closer to the picture than
-/// `candidate`.
+/// Fits each field of the camera and of checkerboards, starting from its present numbers, if the
+/// field may be wrong. Colours are not fitted. Returns the few best hypotheses that are closer to
+/// the picture than `candidate`.
 ///
-/// This finds slightly wrong numbers if a checkerboard with small squares fills most of the
-/// picture. Other fits use the coarsest grid, `tiny`, which has few samples per cell. Even a small
-/// movement of such a board changes the colours of most of these samples, so the fit fails there.
-/// Here, the next finer grid, `coarse`, is used, which is rendered exactly.
+/// This function is needed if a checkerboard with small squares fills most of the picture. Other
+/// fits use the coarsest grid, `tiny`, with few samples per cell. They fail, because even a small
+/// movement of the board changes the colours of most samples. Therefore, this function uses the
+/// next finer grid, `coarse`, which is rendered exactly.
 pub fn slightly_wrong(judge: &Judge, candidate: &Candidate, suspects: &[usize]) -> Vec<Candidate> {
     let level = &judge.coarse;
     let Some((difference, _)) = judge.with_difference(candidate.clone(), level) else {
@@ -128,8 +129,9 @@ pub fn suspects(judge: &Judge, from: &Judged) -> Vec<usize> {
     let labels = judge.labels(from.candidate(), from.candidate().layout, grid);
     let mut wrong = vec![0.0; judge.scene.objects.len()];
     for (at, off) in from.score.chi_squares.iter().enumerate() {
-        // An object that is larger than in the hypothesis's scene causes errors beside the cells in
-        // which the hypothesis shows it. So an error is attributed to all objects near the cell.
+        // If an object is larger than the hypothesis says, it causes errors beside the cells in
+        // which the hypothesis shows it. So the error of a cell is attributed to all objects near
+        // the cell.
         let near: BTreeSet<usize> = grid.around(at, 2).filter_map(|at| labels[at]).collect();
         near.into_iter()
             .for_each(|object| wrong[object] += libm::log1p(*off));
@@ -146,7 +148,7 @@ fn is_board(candidate: &Candidate, object: usize) -> bool {
     candidate.scene.objects[object].shape.center().is_none()
 }
 
-/// Returns the fields of a hypothesis's scene that may be wrong and are not among its mistakes yet.
+/// Returns the fields of a hypothesis's scene that may be wrong, except those among its mistakes.
 fn suspected(candidate: &Candidate, suspects: &[usize]) -> Vec<Parameter> {
     let is_suspect = |parameter: &Parameter| match parameter.owner {
         Owner::Object(object) => suspects.iter().any(|&suspect| {
@@ -154,9 +156,9 @@ fn suspected(candidate: &Candidate, suspects: &[usize]) -> Vec<Parameter> {
             object == suspect || own.is_beside(other)
         }),
         // A wrong camera moves all objects. So the camera is not suspected if only one of several
-        // objects is suspected, unless this object is a checkerboard, which may fill most of the
-        // picture. The near and far planes are suspected anyway, because they may cut off a single
-        // object.
+        // objects is suspected. There are two exceptions. If this object is a checkerboard, it may
+        // fill most of the picture. And the near and far planes are always suspected, because they
+        // may cut off a single object.
         Owner::Camera if !matches!(parameter.fields[0], "near" | "far") => match suspects {
             [sole] if candidate.scene.objects.len() > 1 => is_board(candidate, *sole),
             _ => true,
@@ -169,9 +171,9 @@ fn suspected(candidate: &Candidate, suspects: &[usize]) -> Vec<Parameter> {
     all
 }
 
-/// Returns for each given colour the one that the picture shows instead: the median over the pixels
-/// in which only the given colour is predicted. Keeps the given colour if there are no such pixels.
-/// `numbers` contains three channels for each given colour, from 0 to 255.
+/// Returns for each given colour the colour that the picture shows instead. This is the median over
+/// the pixels that should show only the given colour. If there are none, the given colour is
+/// returned. `numbers` contains three channels for each given colour, from 0 to 255.
 fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
     let color = |own: &[f64; 3]| {
         let light = DVec3::from(Color { srgb: *own }.to_linear());
@@ -185,8 +187,8 @@ fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
         let mut median = |i: usize| {
             seen.sort_by(|one, other| one[i].total_cmp(&other[i]));
             let middle = seen.get(seen.len() / 2)?;
-            // Rounding to 1/1024 of a byte removes the rounding errors of conversions, so that
-            // whole bytes are exact.
+            // Rounding to 1/1024 of an 8-bit step removes the rounding errors of the conversions,
+            // so that integers are exact.
             Some((255.0 * linear_to_srgb(middle[i]) * 1024.0).round() / 1024.0)
         };
         [0, 1, 2].map(|i| median(i).unwrap_or(own[i]))
@@ -196,9 +198,9 @@ fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
 }
 
 /// Returns starting values for the depth of the near or far plane: its present depth, and a series
-/// of depths around a reference distance, each 1.2 times the one before. The reference is the
-/// distance from the eye to the point that the camera looks at, or to the origin if there is no
-/// such point.
+/// of depths around a reference distance. Each depth is 1.2 times the one before. The reference
+/// distance is that from the eye to the point that the camera looks at. If there is no such point,
+/// the distance to the origin is used, but at least 1 m.
 fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
     const FROM: i32 = -12;
     const TO: i32 = 24;
@@ -211,11 +213,11 @@ fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
     std::iter::once(numbers).chain(depths).collect()
 }
 
-/// Returns starting values for a field's numbers: its own numbers; other numbers near them; and the
-/// results of slips of the hand, such as a wrong sign or two exchanged numbers.
+/// Returns starting values for a field's numbers: the scene's own numbers, other numbers near them,
+/// and the results of typical slips, such as a wrong sign or two exchanged numbers.
 fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     let mut starts = vec![numbers.to_vec()];
-    // A single number has few starting values, so they may cover a wider range.
+    // A single number has fewer starting values than a vector, so these may cover a wider range.
     let far = match numbers.len() {
         1 => 10,
         _ => 3,
@@ -238,7 +240,7 @@ fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>
         (1..12).for_each(|i| with(&|other| other[0] += 30.0 * f64::from(i)));
     }
     for i in 0..numbers.len() {
-        // A slip changes a single field, not `eye` and `lookat` together.
+        // Slips are tried in single fields only, not in `eye` and `lookat` together.
         if parameter.fields.len() == 1 {
             for by in SLIPS {
                 with(&|other| other[i] *= by);

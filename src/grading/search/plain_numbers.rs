@@ -1,9 +1,10 @@
-//! Simplifies fitted numbers. They become the scene's own numbers, or results of a slip of the
-//! hand, if these explain the picture as well, and otherwise get fewer digits.
+//! Simplifies fitted numbers. They are replaced by the scene's own numbers, or by results of a
+//! typical slip, if these explain the picture equally well. Otherwise, they are rounded to fewer
+//! digits.
 //!
-//! Somebody who mistypes a scene usually changes one number of a vector, and writes a short number.
-//! So among equally good fits, those that change the fewest of the scene's numbers are preferred.
-//! Of these, the one whose numbers have the fewest digits is chosen.
+//! Somebody who mistypes a scene usually mistypes one number of a vector, and writes a short
+//! number. So among equally good fits, the one that changes the fewest numbers of the scene is
+//! preferred and, among these, the one with the fewest digits.
 
 use super::{
     judge::{CELL_STEP, Judge, price},
@@ -15,21 +16,22 @@ use crate::{
     scene::Scene,
 };
 
-/// Maximum displacement of an edge, in pixels, that rounding a number may cause in the first round
-/// of attempts. Each further round allows less, so numbers become longer. With a larger value,
-/// shorter numbers are tried first, but more of them are rejected.
+/// Maximum displacement of an edge, in pixels, that rounding a number may cause in the first round.
+/// Each further round allows less, so numbers get more digits. With a larger value, shorter numbers
+/// are tried first, but more of them are rejected.
 const TENTH: f64 = 0.1;
-/// Maximum number of rounds of rounding. Each round allows a quarter of the displacement of the
-/// round before. The fifth allows 0.0004 pixels, so more rounds would hardly change a picture.
+/// Maximum number of rounds in which rounding is tried. Each round allows a quarter of the
+/// displacement of the round before. The fifth round allows 0.0004 pixels, so more rounds would
+/// hardly change a picture.
 const QUARTERS: i32 = 5;
 
-/// Number of standard deviations of a fitted number by which rounding may change it. The value may
-/// be generous, because a test of the rounded numbers follows.
+/// Number of standard deviations by which rounding may change a fitted number. The value may be
+/// large, because the rounded numbers are tested afterwards.
 const DEVIATIONS: f64 = 8.0;
 
-/// Maximum number of rounds of fitting the other numbers, after one number was replaced by the
-/// scene's own number. More rounds take longer; with fewer, the other numbers may not reach their
-/// best values.
+/// Maximum number of rounds in which the other numbers are fitted after one number was replaced by
+/// the scene's own. More rounds take longer. With fewer, the other numbers may not reach their best
+/// values.
 const ROUNDS: usize = 8;
 
 /// Returns a hypothesis with simplified numbers.
@@ -40,7 +42,7 @@ pub fn plain(judge: &Judge, candidate: &Candidate) -> Candidate {
     shortened(judge, &own).unwrap_or(own)
 }
 
-/// Replaces fitted numbers by the scene's own if the picture is then explained equally well.
+/// Replaces fitted numbers by the scene's own, as long as the picture is explained equally well.
 fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
     let (level, scene) = (judge.fitting(candidate), judge.scene);
     let is_explained = judge.explains(candidate);
@@ -53,8 +55,8 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
             if !judge.work.may_go_on() {
                 return candidate.clone();
             }
-            // A number that is not fitted has no price, so the cost is reduced by the prices of the
-            // numbers that become the scene's own.
+            // The cost contains a penalty ([`price`]) for each fitted number. Numbers that become
+            // the scene's own are not fitted, so their penalties are subtracted.
             let gain = price(level, numbers.len() - free.len());
             let free: Vec<usize> = free.into_iter().map(|i| first + i).collect();
             let judged = || {
@@ -72,8 +74,8 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
             };
             let other = judged.candidate();
             if judged.cost - gain <= cost || is_explained && judge.explains(other) {
-                // Replacements that failed before may succeed from the new numbers, so all are
-                // tried again.
+                // After this replacement, others that failed before may succeed, so all are tried
+                // again.
                 return with_own(judge, other, cost.max(judged.cost));
             }
         }
@@ -82,13 +84,13 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
     candidate.clone()
 }
 
-/// Returns variants of a field's wrong numbers, in which some are replaced by the numbers of the
+/// Returns variants of a field's wrong numbers, in which some numbers are replaced by those of the
 /// correct scene. The other numbers are free, i.e. may be fitted again. In a vector, one or two
-/// coordinates are free. In `eye` and `lookat` together, one point is free. Each variant comes with
-/// the indices of its free numbers.
+/// coordinates are free. If `eye` and `lookat` are wrong together, one of the two points is free.
+/// Each variant comes with the indices of its free numbers.
 ///
-/// Variants with few free numbers come first. The very first ones have no free number: they are the
-/// numbers of the correct scene, one of which is changed by a slip of the hand.
+/// Variants with few free numbers come first. The first variants have no free number: in the
+/// numbers of the correct scene, one is changed by a typical slip.
 fn plainer(
     scene: &Scene,
     parameter: &Parameter,
@@ -96,8 +98,8 @@ fn plainer(
 ) -> Vec<(Parameter, Vec<f64>, Vec<usize>)> {
     let own = parameter.numbers(scene);
     let fewer = match (&parameter.fields[..], own.len()) {
-        // A picture does not determine the length of a direction, so the direction is scaled until
-        // one coordinate is the scene's own.
+        // The length of a direction does not affect the picture. So the direction is scaled until
+        // one coordinate equals the scene's own.
         (["normal" | "direction"], _) => {
             let is_scaled = (0..3).any(|i| numbers[i].abs() == own[i].abs() && own[i] != 0.0);
             let nonzero = (0..3).filter(|&i| !is_scaled && numbers[i] * own[i] != 0.0);
@@ -133,9 +135,9 @@ fn plainer(
     [slips(scene, parameter, numbers), fewer].concat()
 }
 
-/// Returns variants of the scene's numbers in which one number is changed by a slip of the hand.
-/// Leaves out variants whose picture is shifted by a pixel or more from the picture that `numbers`
-/// make.
+/// Returns variants of the scene's numbers in which one number is changed by a typical slip
+/// ([`SLIPS`]). Only variants are returned whose picture is shifted by less than a pixel from the
+/// picture for `numbers`.
 fn slips(
     scene: &Scene,
     parameter: &Parameter,
@@ -168,21 +170,21 @@ fn slips(
         .collect()
 }
 
-/// Rounds a hypothesis's numbers to as few digits as possible. Returns `None` if no rounding
-/// explains the picture as well, or if the budget of work is used up.
+/// Rounds a hypothesis's numbers to as few digits as possible. Returns `None` if no rounded numbers
+/// explain the picture equally well, or if the budget of work is used up.
 pub fn shortened(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
     let level = judge.fitting(candidate);
     let (_, fitted) = judge.fit_all(candidate, level, [0, 1])?;
     let long = judge.judged(candidate, level)?;
-    // A shortened number is not treated as fitted, so it should have no price. But `judged`
-    // includes the prices of all numbers in the cost of a hypothesis. So these prices are added to
-    // the limit of the cost.
+    // A rounded number is not treated as fitted, so the cost should contain no penalty for it. But
+    // `judged` adds the penalties ([`price`]) of all numbers to the cost. So these penalties are
+    // added to the limit as well.
     let most = long.cost + price(level, fitted.numbers.len());
     let steps = candidate.steps(1.0);
     let rounded_to = |part: f64| {
-        // The picture may hardly depend on a number, such as the length of a vector. The number's
-        // standard deviation is then arbitrarily large, so it is limited to the change that moves
-        // the picture by a pixel.
+        // If the picture hardly depends on a number, such as the length of a vector, the number's
+        // standard deviation is very large. So it is limited to the change that moves the picture
+        // by a pixel.
         let errors = fitted.errors.iter().zip(&steps);
         let errors = errors
             .map(|(error, step)| (part * step.abs()).max((DEVIATIONS * error).min(step.abs())));
@@ -192,9 +194,9 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
     };
     let is_as_good = |short: &Candidate| {
         let judged = judge.judged(short, level);
-        // Noise with a structure, such as that of a regular grid of samples, may be fitted only by
-        // long numbers. So short numbers are accepted even at a higher cost, if they explain the
-        // picture.
+        // Noise with a structure, such as that of a regular grid of samples, may be fitted best by
+        // long numbers. So short numbers that explain the picture are accepted even if their cost
+        // is higher.
         judged.is_some_and(|judged| judged.cost <= most) || judge.explains(short)
     };
     let mut shorter =

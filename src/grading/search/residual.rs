@@ -1,4 +1,4 @@
-//! What a hypothesis about the program leaves unexplained in the pixels of a picture.
+//! Computes what a hypothesis about the program leaves unexplained in the pixels of a picture.
 
 use std::sync::Arc;
 
@@ -8,53 +8,55 @@ use crate::grading::{
     scoring::{Displacement, Prediction, work},
 };
 
-/// Divisor of the number of pixels: up to 1/4000 of the pixels may be wrong although a hypothesis
-/// is correct. It is used if the prediction is not exact, i.e. if it was sampled or the picture is
-/// a JPEG. Chosen by trial on pictures with known mistakes.
+/// Reciprocal of the fraction of pixels that may be wrong although a hypothesis is correct: 1/4000.
+/// The fraction is 0 if the prediction is exact, i.e. if it was not sampled and the picture is no
+/// JPEG. Chosen by trial on pictures with known mistakes.
 const PIXELS_PER_MISS: usize = 4000;
 
-/// Distance from an edge, in pixels, within which a wrong pixel is attributed to the edge. It
-/// covers edges that are displaced by two pixels, and pixels up to five times too wide.
+/// Distance from an edge, in pixels, within which a wrong pixel is attributed to the edge. Edges
+/// that are displaced by two pixels, and pixels up to five times too wide, cause errors within this
+/// distance.
 const EDGE_REACH: usize = 3;
 /// Distance from an edge, in pixels, within which a wrong pixel of a JPEG is attributed to the
 /// edge. It is the side of a JPEG's blocks.
 const CODED_EDGE_REACH: usize = 8;
-/// Divisor of the number of wrong pixels: errors are attributed to edges if at most 1/10 of the
-/// wrong pixels lie far from all edges. A few such pixels are allowed, because a wide pixel filter
-/// changes pixels slightly even far from an edge. Chosen by trial.
+/// Reciprocal of a fraction of the wrong pixels, 1/10. If at most this fraction lies far from all
+/// edges, all errors are attributed to edges. A few pixels far from edges are allowed, because a
+/// wide pixel filter changes them slightly. Chosen by trial.
 const PIXELS_PER_INSIDE: usize = 10;
 
-/// Reciprocal of the fraction of a picture's pixels, 1/50 or 2 %, that may be wrong before mistakes
-/// that are weakly visible everywhere are tried, even if the wrong pixels do not lie at edges. With
-/// a smaller number, such mistakes would be overlooked in more pictures.
+/// Reciprocal of a fraction of the pixels, 1/50. If a greater fraction is wrong, mistakes that are
+/// weakly visible everywhere are tried even if the wrong pixels do not lie at edges. With a smaller
+/// number, such mistakes would be overlooked in more pictures.
 const MUCH_WRONG: usize = 50;
 
-/// Number of wrong cells of the grid `middle` that may lie away from all edges before a hypothesis
-/// is rejected without a look at its pixels. Fitted numbers that are not quite right yet may leave
-/// a few. With a larger number, the pixels of more hypotheses are rendered.
+/// Maximum number of wrong cells of the grid `middle` that may lie away from all edges. If there
+/// are more, a hypothesis is rejected without rendering its pixels. A few are allowed, because
+/// numbers that are not yet fitted well may cause them. With a larger number, the pixels of more
+/// hypotheses are rendered.
 const FEW_INSIDE: usize = 10;
 
-/// Greatest displacement of all edges together that is ignored if each pixel has very many samples,
-/// in pixels. Rounded numbers in a scene may displace edges this far.
+/// Greatest displacement of all edges together, in pixels, that is ignored if each pixel has very
+/// many samples. Rounded numbers in a scene may displace edges by this distance.
 const IGNORED: f64 = 0.06;
 
-/// Amount that is added to [`IGNORED`] if each pixel has one sample, in pixels. For n samples per
+/// Amount, in pixels, that is added to [`IGNORED`] if each pixel has one sample. For n samples per
 /// pixel, it is divided by n. Chosen by trial.
 const IGNORED_WITH_ONE_SAMPLE: f64 = 0.06;
 
-/// Coefficients a, b and c of a limit in pixels. If the edges of a single object are displaced by
-/// less than the limit, this is ignored. For n samples per pixel, the limit is a + b/√n, or a +
-/// c/√n in a JPEG, because coding adds noise. Samples on a regular grid are 1/√n apart, so they may
-/// displace an edge parallel to the grid by up to 0.5/√n.
+/// Coefficients a, b and c of a limit in pixels. A displacement of a single object's edges by less
+/// than the limit is ignored. For n samples per pixel, the limit is a + b/√n. In a JPEG, it is a +
+/// c/√n, because coding adds noise. Samples on a regular grid are 1/√n apart, so an edge parallel
+/// to the grid may seem displaced by up to 0.5/√n.
 const IGNORED_OF_OBJECT: [f64; 3] = [0.12, 0.5, 0.7];
 
-/// Displacement of all edges of a JPEG, in pixels along a row or a column, above which it is
-/// reported if it is also significant (see `SURELY_MOVED`). Coding hides most of a displacement, so
-/// the value is small. It is greater than 1/6, because the mean of three samples at the same places
-/// in all pixels may lie 1/6 pixel off the middle.
+/// Threshold for a displacement of all edges of a JPEG, in pixels along a row or a column. A
+/// greater displacement is reported if it is also significant ([`SURELY_MOVED`]). JPEG coding hides
+/// most of a displacement, so the threshold is low. It is greater than 1/6, because three sample
+/// positions that all pixels share may have a mean that is 1/6 pixel from the middle.
 const MOVED: f64 = 0.2;
-/// Squared length of a displacement of a JPEG's edges, in squared standard deviations, above which
-/// it is significant enough to be reported. Chosen by trial.
+/// Threshold for the squared length of a displacement of a JPEG's edges, in squared standard
+/// deviations. A displacement with a greater squared length is significant. Chosen by trial.
 const SURELY_MOVED: f64 = 150.0;
 
 /// Number of hypotheses whose residuals are remembered. The search needs the residual of a
@@ -62,12 +64,13 @@ const SURELY_MOVED: f64 = 150.0;
 const RESIDUALS: usize = 4;
 
 impl Judge<'_> {
-    /// Returns whether a hypothesis explains the picture: no pixel that should have one colour
-    /// shows another one, and edges lie in their places and are as sharp as they should be.
+    /// Returns whether a hypothesis explains the picture. It does if all pixels that should have
+    /// one colour show this colour, and if edges have the right position and sharpness.
     ///
-    /// The grid `middle` is tested first, because this is faster than testing single pixels. A
-    /// wrong cell contains at least one wrong pixel, so the test of the pixels can then be skipped.
-    /// JPEG coding is predicted only for single pixels, so the grid does not decide about a JPEG.
+    /// The cells of the grid `middle` are tested first, because this is faster than testing single
+    /// pixels. A wrong cell contains at least one wrong pixel, so if cells are wrong, the pixels
+    /// need not be tested. For a JPEG, only pixels are tested, because JPEG coding is predicted
+    /// only for pixels.
     pub fn explains(&self, candidate: &Candidate) -> bool {
         let is_possible = self.middle.jpeg.is_some()
             || self
@@ -79,8 +82,8 @@ impl Judge<'_> {
                 .is_some_and(|residual| residual.is_noise())
     }
 
-    /// Returns what a hypothesis leaves unexplained. Remembers it for the last few hypotheses.
-    /// Returns `None` if the budget of work is used up.
+    /// Returns what a hypothesis leaves unexplained. Results for the last few hypotheses are
+    /// remembered. Returns `None` if the budget of work is used up.
     pub fn residual(&self, candidate: &Candidate) -> Option<Residual> {
         let mut known = self.residuals.borrow_mut();
         let is_same = |(mistakes, _): &(Vec<Mistake>, Residual)| *mistakes == candidate.mistakes;
@@ -102,9 +105,10 @@ impl Judge<'_> {
         Some(residual)
     }
 
-    /// Returns what a hypothesis leaves unexplained if most wrong cells of the grid `middle` lie
-    /// away from all edges, and they are more than a few. The pixels need not be rendered then.
-    /// JPEG coding changes single pixels, so a JPEG's pixels are always tested.
+    /// Returns what a hypothesis leaves unexplained if this can be seen without rendering its
+    /// pixels: on the grid `middle`, most wrong cells lie away from all edges, and they are more
+    /// than a few ([`FEW_INSIDE`]). Returns `None` otherwise, and for a JPEG, because JPEG coding
+    /// is predicted only for pixels.
     fn far_from_edges(&self, candidate: &Candidate) -> Option<Residual> {
         let grid = &self.middle.grid;
         let prediction = self.predicted(candidate, &self.middle)?;
@@ -122,8 +126,9 @@ impl Judge<'_> {
         })
     }
 
-    /// Returns how many pixels that should have one colour may show another one. Samples may miss
-    /// the corner of an object, and JPEG coding may change a pixel more than predicted.
+    /// Returns how many pixels that should have one colour may be wrong although the hypothesis is
+    /// correct. Samples may miss the corner of an object, and JPEG coding may change a pixel more
+    /// than predicted.
     fn missed(&self, candidate: &Candidate) -> usize {
         if self.is_exact(candidate) {
             0
@@ -139,7 +144,8 @@ impl Judge<'_> {
     }
 }
 
-/// Computes what the prediction of a hypothesis leaves unexplained.
+/// Computes what the hypothesis `candidate` leaves unexplained. `prediction` is its prediction of
+/// all pixels.
 fn residual_of(judge: &Judge, candidate: &Candidate, prediction: &Prediction) -> Residual {
     let (level, strays) = (&judge.fine, prediction.strays());
     judge.work.spend(work::RESIDUAL * level.grid.count() as f64);
@@ -149,8 +155,8 @@ fn residual_of(judge: &Judge, candidate: &Candidate, prediction: &Prediction) ->
     let is_inside = |at: &&usize| grid.around(**at, reach).all(|at| prediction.is_flat(at));
     let inside = strays.pixels.iter().filter(is_inside).count();
     let is_at_edges = inside <= missed + strays.pixels.len() / PIXELS_PER_INSIDE;
-    // Edges are tested only if almost all wrong pixels lie near them. Other wrong pixels show that
-    // whole areas are wrong.
+    // Edges are tested only if almost all wrong pixels lie near them. If many lie elsewhere, whole
+    // areas are wrong.
     let (displacement, width, is_tinted) = if is_at_edges {
         let labels = judge.labels(candidate, candidate.layout, &level.grid);
         let background = judge.scene.objects.len();
@@ -171,9 +177,9 @@ fn residual_of(judge: &Judge, candidate: &Candidate, prediction: &Prediction) ->
     }
 }
 
-/// Returns the displacement of the picture, or of the object that is displaced most, and the width
-/// of the pixel filter. Each is `None` if chance or few samples may explain it. `groups` contains
-/// the index of the object that is seen in each pixel.
+/// Returns the displacement of all edges or, if this may be chance, of the most displaced object.
+/// Also returns the width of the pixel filter. Each result is `None` if chance or few samples may
+/// explain it. `groups` contains for each pixel the index of the object that is seen there.
 fn displacement_and_width(
     judge: &Judge,
     candidate: &Candidate,
@@ -182,9 +188,8 @@ fn displacement_and_width(
 ) -> (Option<Displacement>, Option<f64>) {
     let level = &judge.fine;
     let share = match level.jpeg {
-        // `share` is the variance of a pixel's error, divided by that of one sample. In a JPEG, it
-        // is not derived from the number of samples in the score: coding also changes edges, which
-        // would look like fewer samples.
+        // `share` is the variance of a pixel's error, divided by that of one sample. For a JPEG, it
+        // is computed in another way, because coding changes edges as if there were fewer samples.
         Some(_) => prediction.share(),
         None => {
             let score = prediction.score();
@@ -210,9 +215,9 @@ fn displacement_and_width(
     let [none, of_one, of_coded] = IGNORED_OF_OBJECT;
     let more = level.jpeg.map_or(of_one, |_| of_coded);
     let of_object = none + more * share.sqrt();
-    // The pixel width is not estimated if the hypothesis already contains a wrong width. It is not
-    // estimated either if an effect on light does not keep means, because the pixels at edges then
-    // depend on this effect as well as on the width.
+    // The pixel width is not estimated in two cases: if the hypothesis already contains a wrong
+    // width, or if an effect on light does not keep means. In the second case, pixels at edges
+    // depend both on this effect and on the width.
     let is_width_explained = candidate.is_filtered() || !candidate.keeps_light();
     let width = (!is_width_explained)
         .then(|| prediction.pixel_width(&deviations, share, level.jpeg.is_some()));
