@@ -1,5 +1,5 @@
 //! Reports on Pinhole itself: how accurate its arithmetic is, and how fast the errors of its
-//! sampling methods fall.
+//! sampling methods decrease with more samples.
 
 pub mod numerics;
 pub mod speed;

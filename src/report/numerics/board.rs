@@ -52,8 +52,8 @@ fn parallels(random: &mut CaseRng) -> CaseScene {
     })
 }
 
-/// Returns a scene in which the eye lies exactly in the planes of a board, a triangle, and a box's
-/// top face.
+/// Returns a scene in which a board, a triangle and a box's top face lie exactly in one plane with
+/// the eye.
 fn edge_on(random: &mut CaseRng) -> CaseScene {
     let eye = random.vector(3.0);
     let ahead = dvec3(random.within(-0.5, 0.5), random.within(-0.3, 0.3), -1.0);
@@ -93,9 +93,9 @@ fn displaced(random: &mut CaseRng) -> CaseScene {
     input(along(eye, down), &[board(0.0, 1.0)])
 }
 
-/// Returns a view straight down on a board from a height of 64 times a square's side. From pixel to
-/// pixel, the slope of the ray changes by 1/64, so the upper left corner of each pixel shows
-/// exactly a corner of a square.
+/// Returns a view straight down on a board. The height of the eye is 64 times a square's side, and
+/// from pixel to pixel, the slope of the ray changes by 1/64. So the upper left corner of each
+/// pixel shows exactly a corner of a square.
 fn corners(random: &mut CaseRng) -> CaseScene {
     let (reach, size) = (1 << random.below(53), libm::exp2(random.whole(-60, 60)));
     let eye = random.wholes([-reach, 64, -reach], [reach, 64, reach]) * size;

@@ -40,9 +40,9 @@ fn nearly_parallel(random: &mut CaseRng) -> Camera {
     let beside = random.unit() * random.power(lowest, -1.0);
     // `beside` is a vector that is usually much shorter than the view direction. In one half of the
     // inputs, the up vector is the sum of the view direction and `beside`. In the other half, the
-    // up vector is the y axis, and the camera looks nearly straight down, with `beside` as the
-    // deviation. The camera also looks down if the sum is exactly parallel to the view direction,
-    // because `beside` is too small to change it.
+    // up vector is the y axis, and the view direction is −y plus the x and z of `beside`. This half
+    // also includes inputs in which `beside` is so short that the sum is exactly parallel to the
+    // view direction.
     let mut camera = along(DVec3::ZERO, view);
     camera.up = view + beside;
     if camera.up.cross(view) == DVec3::ZERO || random.below(2) == 0 {
@@ -72,14 +72,14 @@ fn lengths(random: &mut CaseRng) -> Camera {
     camera
 }
 
-/// Returns a scene seen by an extremely wide or narrow lens, i.e. with the view plane at a tiny or
-/// huge distance d.
+/// Returns a scene that is seen through an extremely wide or narrow lens, i.e. with the view plane
+/// at a tiny or huge distance d from the eye.
 ///
-/// If d is tiny, the slope of some rays towards the checkerboard is about d. A ray is treated as
+/// If d is tiny, some rays have a slope of about d towards the checkerboard. A ray is treated as
 /// parallel to the board if its slope is below a threshold: about 2^−90 in the language's rules,
-/// 2^−310 in the tracer, and 2^−1071 in the oracle (the reference, with 3000 bits). If d is between
-/// 2^−310 and 2^−90, such rays are parallel to the board by the language's rules, but not in the
-/// tracer. Such distances are therefore not tested.
+/// 2^−310 in the tracer, and 2^−1071 in the oracle (the reference, with 3000 bits). For d between
+/// 2^−310 and 2^−90, rays with the slope d are parallel to the board by the language's rules, but
+/// not in the tracer. Therefore, these distances are not tested.
 fn lenses(random: &mut CaseRng) -> CaseScene {
     let lowest = random.pick(&[9.0, 155.0]);
     let d = random.power(lowest, lowest * 1.95);
@@ -124,17 +124,17 @@ fn wide(random: &mut CaseRng) -> CaseScene {
         let size = dvec3(0.7, random.within(0.1, 2.0), 18.0);
         shapes.push(cuboid(corner, corner + size));
     }
-    // The picture has 64 rows and 2^20 columns, and its window in space is 2 m high, so the window
-    // is 32768 m wide. The distance is half the window's width, so the horizontal field of view is
-    // 90°.
+    // The picture has 64 rows and 2^20 columns. It shows a window in space that is 2 m high, and
+    // therefore 32768 m wide. The window's distance from the eye is half its width, so the
+    // horizontal field of view is 90°.
     camera.lens = Lens::Distance(16384.0);
     let mut input = input(camera, &shapes);
     input.scene.image.width = 1 << 20;
     input
 }
 
-/// View directions with integer components and an integer length, each with its length. Along such
-/// a direction, a wall perpendicular to it can have an exactly representable depth.
+/// View directions whose components and length are integers, each with its length. A wall that is
+/// perpendicular to such a direction can have an exactly representable depth.
 const WHOLE: [(DVec3, f64); 4] = [
     (dvec3(0.0, 0.0, -1.0), 1.0),
     (dvec3(3.0, 0.0, -4.0), 5.0),
@@ -142,8 +142,8 @@ const WHOLE: [(DVec3, f64); 4] = [
     (dvec3(6.0, 3.0, -2.0), 7.0),
 ];
 
-/// Returns a scene with a wall perpendicular to the view direction, and a near or far clip plane.
-/// The clip plane has exactly the wall's depth or a neighbouring `f64`.
+/// Returns a scene with a wall perpendicular to the view direction, and with a near or far plane.
+/// The depth of the near or far plane is exactly that of the wall, or a neighbouring `f64`.
 fn exactly_there(random: &mut CaseRng) -> CaseScene {
     let (direction, length) = random.pick(&WHOLE);
     let steps = random.whole(1, 1 << 20) / 1024.0;

@@ -1,6 +1,6 @@
-//! A hard case: a kind of scene or camera for which rounding errors easily cause wrong answers. It
-//! generates random scenes or cameras, and tests what Pinhole computes for them: what is seen at
-//! points of a scene's picture, or the axes of a camera.
+//! A hard case: a kind of scene or camera for which rounding errors easily cause wrong answers. A
+//! case generates random scenes or cameras. For scenes, it tests what Pinhole sees at points of the
+//! picture. For cameras, it tests the axes that Pinhole computes.
 
 use super::{
     inputs::{CaseRng, SamplePoint},
@@ -19,18 +19,17 @@ pub struct Case {
     pub id: &'static str,
     /// Description of what is difficult in the case, for tables.
     pub title: &'static str,
-    /// Guaranteed upper bound of the errors of Pinhole's numbers, in the unit that
-    /// [`unit`](Self::unit) returns. Errors in decisions, such as which object is seen, are never
-    /// allowed.
+    /// Guaranteed upper bound of the errors of the numbers that Pinhole computes, in the unit
+    /// [`unit`](Self::unit). Decisions, such as which object is seen, must always be right.
     pub bound: f64,
     pub(super) subject: Question,
 }
 
-/// What a case tests, with a generator of random inputs.
+/// What a case tests. Each variant contains a function that generates random inputs.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Question {
-    /// Tests points of a scene's picture: which object is seen there, how far away it is, and at
-    /// which place it is hit. Errors of the distance and the place are in units in the last place
+    /// Tests points of a scene's picture: which object is seen there, at which distance, and at
+    /// which point in space. Errors of the distance and of the point are in units in the last place
     /// (ulp).
     Seen(fn(&mut CaseRng) -> CaseScene),
     /// Tests the axes of a camera, which are unit vectors. Errors of their components are in units
@@ -39,7 +38,8 @@ pub(super) enum Question {
 }
 
 impl Case {
-    /// Returns whether the case tests which object is seen. Other cases test only numbers.
+    /// Returns whether the case tests which object is seen. Other cases test only the axes of
+    /// cameras.
     pub fn decides(&self) -> bool {
         matches!(self.subject, Question::Seen(_))
     }
@@ -64,16 +64,16 @@ impl Case {
     }
 }
 
-/// A scene, with a rule for the points of its picture that are tested.
+/// A scene, and a rule for choosing the points of its picture that are tested.
 pub(super) struct CaseScene {
     pub scene: Scene,
-    /// Precision of the arithmetic of the oracle, the reference that Pinhole is compared with, in
-    /// bits.
+    /// Precision, in bits, of the oracle's arithmetic. The oracle is the reference that Pinhole is
+    /// compared with.
     bits: usize,
     /// Generator of random points of the picture. By default, all points are equally likely.
     points: Box<dyn Fn(&mut CaseRng) -> SamplePoint>,
-    /// Share of the tests that use points from the generator `points`, in halves: 0 for none of the
-    /// tests, 1 for a half, 2 for all. The other tests use points close to boundaries between
+    /// Number of halves of the tests that use points from the generator `points`: 0 for no tests, 1
+    /// for half of the tests, 2 for all. The other tests use points close to boundaries between
     /// colours.
     halves: u64,
 }

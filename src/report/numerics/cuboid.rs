@@ -20,8 +20,8 @@ pub const CASES: &[Case] = &[
     Case { id: "B5", title: "the seam of two boxes that share a face", bound: 2.0, subject: Seen(neighbours) },
 ];
 
-/// Returns a view along −z in which the eye may lie in the planes of a box's faces. Rays through
-/// the vertical or horizontal middle line of the picture then stay exactly in such a plane.
+/// Returns a view along −z in which the eye may lie in the plane of a box's face. Rays through the
+/// vertical or horizontal middle line of the picture may then lie exactly in this plane.
 fn in_planes(random: &mut CaseRng) -> CaseScene {
     let min = random.wholes([-9, -9, -40], [9, 9, -9]) / 4.0;
     let max = min + random.wholes([1; 3], [9; 3]) / 4.0;
@@ -67,8 +67,8 @@ fn thin(random: &mut CaseRng) -> CaseScene {
     let axis = random.below(3) as usize;
     max[axis] = min[axis].next_up();
     let mut eye = random.vector(1.0).normalize() * 5.0;
-    // The eye may be far above the plane of the thin box, or so near to the plane that the box is
-    // seen edge-on.
+    // The eye may be far from the plane of the thin box, or so close to it that the box is seen
+    // edge-on.
     eye[axis] = min[axis] + random.sign() * random.power(-15.0, 0.5);
     let shapes = [cuboid(min, max), sphere((min + max) / 2.0, 0.3)];
     input(camera(eye, (min + max) / 2.0), &shapes)

@@ -11,23 +11,24 @@ use crate::{
     },
 };
 
-/// A point of a picture. For each axis, contains the pixel's column or row, and the offset from the
-/// pixel's centre, in pixels.
+/// A point of a picture. Contains two pairs, for x and y: the pixel's column or row, and the
+/// point's offset from the pixel's centre, in pixels.
 pub type SamplePoint = [(u32, f64); 2];
 
-/// The last `f64` coordinate before the middle of a picture of [`SIZE`] × [`SIZE`] pixels, and the
-/// coordinate of the middle itself, for use on either axis. As in a [`SamplePoint`], each is given
-/// by a pixel's column or row and the offset from the pixel's centre.
+/// Coordinates at the middle of a picture of [`SIZE`] × [`SIZE`] pixels, for either axis: the last
+/// `f64` before the middle, and the middle itself. As in a [`SamplePoint`], each is given by a
+/// pixel's column or row and the offset from the pixel's centre.
 pub const MIDDLE: [(u32, f64); 2] = [(SIZE / 2 - 1, 0.5_f64.next_down()), (SIZE / 2, -0.5)];
 
 /// A generator of pseudorandom numbers. The inputs of a case are divided into blocks, each of which
-/// is tested by one thread. The numbers depend only on the case and on the block's index, so the
-/// number of threads does not affect them.
+/// is tested by one thread. The random numbers depend only on the case and on the block's index, so
+/// the number of threads does not affect them.
 #[derive(Clone, Debug)]
 pub struct CaseRng(CounterRng);
 
 impl CaseRng {
-    /// Makes the generator for block `block` of the inputs of the case named `case`.
+    /// Makes the random generator for the case named `case` and the block of its inputs with the
+    /// index `block`.
     pub fn new(case: &str, block: u64) -> Self {
         let name = case.bytes();
         let name = name.fold(0, |name, byte| name << 8 | u64::from(byte));
@@ -93,8 +94,8 @@ impl CaseRng {
         self.between([-half; 3], [half; 3])
     }
 
-    /// Returns a uniformly random unit vector. It is a random point of the unit ball, scaled to
-    /// length 1.
+    /// Returns a uniformly random unit vector, by scaling a random point of the unit ball to length
+    /// 1.
     pub fn unit(&mut self) -> DVec3 {
         loop {
             let v = self.vector(1.0);

@@ -1,20 +1,20 @@
 //! Measures the accuracy of the arithmetic in hard cases.
 //!
-//! A hard case generates scenes in which rounding errors easily cause wrong answers: rays that
-//! touch surfaces, horizons, shared edges, eyes on surfaces, very large and small numbers. What is
-//! seen at a point is computed three times: by the [`oracle`](crate::reference::oracle), a
-//! reference tracer with at least 512 bits; by the [`textbook`](crate::reference::textbook)
-//! formulas in `f64`; and by the tracer that renders pictures. Answers that differ from the
-//! oracle's are counted. At every 16th input, the errors of the distance and of the coordinates of
-//! what is seen are also measured. The tracer is called for one ray at a time; tests verify that
-//! SIMD rays give bit-identical pictures.
+//! A hard case generates scenes in which rounding errors easily cause wrong answers, for example by
+//! rays that touch surfaces, horizons, shared edges, eyes on surfaces, or very large numbers. An
+//! input is a scene and a point of its picture. What is seen at the point is computed three times:
+//! by the [`oracle`](crate::reference::oracle), a reference tracer with at least 512 bits; by the
+//! [`textbook`](crate::reference::textbook) formulas in `f64`; and by the tracer that renders
+//! pictures. Answers that differ from the oracle's are counted. At every 16th input, the errors of
+//! the distance and of the seen point's coordinates are also measured. The tracer is called for one
+//! ray at a time. Tests verify that SIMD rays give bit-identical pictures.
 //!
-//! By default, the inputs lie close to boundaries between colours: at the neighbouring `f64`s on
+//! By default, the points lie close to boundaries between colours: at the neighbouring `f64`s on
 //! both sides, and at distances that are uniform on a logarithmic scale. An input depends only on
-//! its case and its index, so threads do not affect it.
+//! its case and its index, so the number of threads does not affect it.
 //!
-//! Samplers and films have tests of their own, and are left out. Scenes that the language rejects,
-//! such as those with negative sizes, are left out, too.
+//! Samplers and films are not tested here, because they have tests of their own. Scenes that the
+//! language rejects, such as those with negative sizes, are not tested either.
 
 mod board;
 mod camera;
@@ -53,18 +53,17 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
     families.into_iter().flatten()
 }
 
-/// Number of inputs of a case that are tested in the same scene, one after the other by one thread.
-/// Preparing a scene is slow, so a scene is used for many inputs. A larger number would mean fewer
-/// different scenes.
+/// Number of inputs of a case that are tested in the same scene by one thread. Preparing a scene is
+/// slow, so a scene is used for many inputs. With a larger number, there would be fewer different
+/// scenes.
 const BLOCK: u64 = 100;
 
 /// Tests `inputs_per_case` inputs of every case. Reports the progress as a number of inputs. If the
-/// run is cancelled, returns the results so far, which cover about equally many inputs of every
-/// case.
+/// run is cancelled, returns the results so far, with about equally many inputs of every case.
 ///
 /// # Errors
 ///
-/// No thread can be started.
+/// Fails if no thread can be started.
 pub fn run(inputs_per_case: u64, control: &Control) -> Result<NumericsTable, NoThreads> {
     let cases: Vec<_> = cases().collect();
     let blocks = inputs_per_case.div_ceil(BLOCK);
@@ -74,9 +73,8 @@ pub fn run(inputs_per_case: u64, control: &Control) -> Result<NumericsTable, NoT
         let (block, at) = (index / count, (index % count) as usize);
         let inputs = BLOCK.min(inputs_per_case - block * BLOCK);
         let random = &mut CaseRng::new(cases[at].id, block);
-        // The tally counts the inputs, and the errors of every 16th input are measured. Each block
-        // of inputs has a tally of its own, so that the same inputs are measured however the
-        // threads share the blocks.
+        // A tally counts its inputs, and measures the errors of every 16th. Each block of inputs
+        // has its own tally. So the same inputs are measured, whichever thread tests a block.
         let mut tally = CaseTally::default();
         cases[at].ask(random, inputs, &mut tally);
         tallies[at] = tallies[at].plus(tally);

@@ -32,17 +32,17 @@ fn silhouettes(random: &mut CaseRng) -> CaseScene {
     input(camera, &[shape])
 }
 
-/// Returns a view along −z from the origin, and a sphere that touches the plane x = 0. This plane
-/// is seen as the vertical middle line of the picture. A ray in the plane misses the sphere or
-/// touches it, and the language treats touching as a miss. Rays beside the plane, on the sphere's
-/// side, may hit.
+/// Returns a view along −z from the origin, and a sphere that touches the plane x = 0. In the
+/// picture, this plane is the vertical middle line. Rays in the plane touch the sphere or miss it,
+/// and the language treats touching as a miss. Rays beside the plane, on the sphere's side, may hit
+/// the sphere.
 fn touches(random: &mut CaseRng) -> CaseScene {
     let camera = along(DVec3::ZERO, DVec3::NEG_Z);
     let row = random.pixel();
     let depth = random.whole(16, 400);
-    // The slope of a ray changes by 1/64 from row to row. The ray through the upper edge of the row
-    // `row` has the slope (32 − row)/64, so it goes through the point where the sphere touches the
-    // plane.
+    // The vertical slope of a ray changes by 1/64 from row to row. The ray through the upper edge
+    // of the row `row` has the slope (32 − `row`)/64. The sphere is placed so that this ray meets
+    // the point where the sphere touches the plane.
     let y = depth * (f64::from(SIZE) / 2.0 - f64::from(row)) / 64.0;
     let radius = random.whole(1, 80) / 8.0;
     let side = random.sign();
@@ -82,8 +82,8 @@ fn inside(random: &mut CaseRng) -> CaseScene {
 }
 
 fn at_the_surface(random: &mut CaseRng) -> CaseScene {
-    // These points lie at a distance of exactly 5 from the origin, so the eye is exactly on the
-    // surface if `above` is 0.
+    // These points are exactly 5 m from the origin, so the eye is exactly on the surface of the
+    // first sphere if `above` is 0.
     let on = random.pick(&[
         dvec3(3.0, 4.0, 0.0),
         dvec3(0.0, 4.0, -3.0),

@@ -1,4 +1,4 @@
-//! The results of all hard cases as a readable table and as JSON.
+//! Formats the results of all hard cases as a readable table and as JSON.
 
 use std::fmt;
 
@@ -21,7 +21,7 @@ pub struct CaseResult {
 pub struct NumericsTable {
     /// The results, in the order of the report.
     pub rows: Vec<CaseResult>,
-    /// Number of inputs that should be tested, in all cases together.
+    /// Number of inputs that were planned to be tested, in all cases together.
     pub planned: u64,
 }
 
@@ -41,8 +41,8 @@ impl NumericsTable {
         self.inputs() == self.planned
     }
 
-    /// Converts the table to JSON. Null stands for an infinite error (for example, if a surface was
-    /// not found), and for numbers that were not measured.
+    /// Converts the table to JSON. Infinite errors, for example if a surface was not found, and
+    /// numbers that were not measured become null.
     #[doc(hidden)]
     pub fn to_json(&self) -> Value {
         let rows = self.rows.iter().map(|CaseResult { case, tally }| {
@@ -100,7 +100,7 @@ impl fmt::Display for NumericsTable {
 }
 
 /// Returns the cells of a row: the case's name and title, the wrong answers of the textbook
-/// formulas and of Pinhole, their largest errors, and the guaranteed bound.
+/// formulas and of Pinhole, the largest errors of the two, and the guaranteed bound.
 fn cells(CaseResult { case, tally }: &CaseResult) -> [String; 7] {
     let [theirs, ours] = if case.decides() {
         [share(tally.wrong[0], tally.inputs), grouped(tally.wrong[1])]
@@ -124,8 +124,8 @@ fn share(count: u64, inputs: u64) -> String {
     }
 }
 
-/// Formats an error with two decimals. A very small or large error has one digit and an exponent,
-/// and an error that was not measured is a dash.
+/// Formats an error with two decimals. Very small and very large errors get one digit and an
+/// exponent. An error that was not measured becomes a dash.
 fn size(error: Option<f64>) -> String {
     let Some(error) = error else {
         return "-".to_owned();

@@ -33,7 +33,7 @@ pub struct CaseTally {
 }
 
 impl CaseTally {
-    /// Combines two results: adds their counts, and keeps the larger errors.
+    /// Combines the results of two tests: adds their counts, and keeps the larger errors.
     pub fn plus(self, other: Self) -> Self {
         Self {
             inputs: self.inputs + other.inputs,
@@ -54,8 +54,8 @@ fn greater(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::max)
 }
 
-/// Measures the largest errors of a camera's axes, in units of 2^−53, for the textbook formulas and
-/// for Pinhole. Records them in `tally` as one input.
+/// Measures the errors of a camera's axes, in units of 2^−53, for the textbook formulas and for
+/// Pinhole. Counts one input in `tally`, and records the largest errors there.
 pub(super) fn axes(camera: &Camera, tally: &mut CaseTally) {
     let scene = scene(*camera, &[]);
     let oracle = Oracle::new(&scene, ALL_SIZES);
@@ -86,20 +86,20 @@ pub(super) struct Trial {
     oracle: Oracle,
 }
 
-/// Number of tested inputs after which errors are measured once. Every input tests whether the
-/// right object is seen. Every 16th input also measures the errors of the distance and of the
-/// coordinates of what is seen, which is slow. A smaller number would give more measurements, but
-/// take more time.
+/// Number of inputs, one of which is used to measure errors. At every input, it is tested whether
+/// the right object is seen. At every 16th input, the errors of the distance and of the seen
+/// point's coordinates are also measured, which is slow. A smaller number would give more
+/// measurements, but take more time.
 const INPUTS_PER_MEASUREMENT: u64 = 16;
 
-/// Number of searches for a boundary between colours, of which one uses the oracle's answers, and
-/// the others use Pinhole's. The oracle, a slow reference tracer, also finds boundaries that
-/// Pinhole does not see, but its search takes about six times as long as testing the inputs beside
-/// the boundary. With one search in 8, the oracle's searches take less than half of the time.
+/// Number of searches for a boundary between colours, one of which asks the oracle, a slow
+/// reference tracer. The others ask Pinhole. The oracle also finds boundaries that Pinhole does not
+/// see, but searching with it takes about six times as long as testing the inputs beside the
+/// boundary. With one search in 8, the oracle's searches take less than half of the time.
 const BOUNDARIES_PER_ORACLE_SEARCH: u64 = 8;
 
 impl Trial {
-    /// Prepares a scene. The oracle will compute with `bits` bits.
+    /// Prepares a scene. The oracle, the reference tracer, will compute with `bits` bits.
     pub fn new(scene: Scene, bits: usize) -> Self {
         Self {
             world: World::new(&scene),
@@ -111,7 +111,7 @@ impl Trial {
 
     /// Compares what the oracle, the textbook formulas and Pinhole see at a point, and counts wrong
     /// answers in `tally`. At every 16th point ([`INPUTS_PER_MEASUREMENT`]), also measures the
-    /// errors of the distance and of the coordinates of what is seen.
+    /// errors of the distance and of the seen point's coordinates.
     pub fn decide(&self, point: SamplePoint, tally: &mut CaseTally) {
         let truth = self.truth(point);
         let pixels = point.map(|(pixel, offset)| f64::from(pixel) + 0.5 + offset);
@@ -145,10 +145,10 @@ impl Trial {
         seen.map_or(background, |(object, is_odd)| color(object, is_odd))
     }
 
-    /// Measures the errors of the distance and of the coordinates of what is seen at `pixels`, in
-    /// units in the last place (ulp). For the coordinates, this is the last place of the point's
-    /// largest coordinate. Records the larger of the two errors in `tally`, for the textbook
-    /// formulas and for Pinhole.
+    /// Measures two errors at the point `pixels` of the picture, in units in the last place (ulp):
+    /// that of the distance, and that of the seen point's coordinates. For the coordinates, the
+    /// unit is that of the largest coordinate. Records the larger of the two errors in `tally`, for
+    /// the textbook formulas and for Pinhole.
     fn measure(&self, pixels: DVec2, tally: &mut CaseTally) {
         let r = self.oracle.direction_through(pixels, DVec2::ZERO);
         let Some(seen) = self.oracle.seen(&r) else {
@@ -168,8 +168,8 @@ impl Trial {
         tally.errors([theirs, Some(ours)]);
     }
 
-    /// Returns the larger of two errors: that of the distance `t`, in units in its last place, and
-    /// that of `point`, in units in the last place of its largest coordinate.
+    /// Returns the larger of two errors. The error of the distance `t` is in units in its last
+    /// place. The error of `point` is in units in the last place of its largest coordinate.
     fn distance(&self, t: f64, point: DVec3, true_t: &N, true_point: &V) -> f64 {
         let coordinates = true_point.iter().map(|x| x.to_f64().value().abs());
         let greatest = coordinates.fold(0.0, f64::max);
@@ -195,8 +195,8 @@ impl Trial {
     /// oracle's answers, since Pinhole may fail to see a boundary.
     pub fn boundaries(&self, random: &mut CaseRng, count: u64, tally: &mut CaseTally) {
         let end = tally.inputs + count;
-        // A scene may have few boundaries. After four searches per input, the remaining inputs are
-        // tested anywhere in the picture.
+        // A scene may have few boundaries. So after four searches per input, the search ends, and
+        // the remaining inputs are tested anywhere in the picture.
         let mut patience = 4 * count;
         while tally.inputs < end && patience > 0 {
             patience -= 1;
@@ -215,8 +215,8 @@ impl Trial {
     }
 
     /// Searches a random row (`axis` 0) or column (`axis` 1) for a point where the colour `seen`
-    /// changes. Returns the last point before the change, or `None` if both ends of the search have
-    /// the same colour.
+    /// changes. Returns the last point before the change. Returns `None` if the two random ends of
+    /// the search have the same colour.
     fn boundary(
         &self,
         random: &mut CaseRng,
@@ -246,9 +246,9 @@ impl Trial {
             // the next pixel. The pixel's end is the last point before the boundary.
             low = high;
         }
-        // The interval is bisected until its ends are neighbouring `f64`s. Near 0, `f64`s are
-        // extremely dense, so this would take very long. Therefore, there are at most 130
-        // bisections. The interval is then shorter than any useful distance.
+        // The interval is bisected until its ends are neighbouring `f64`s. Near 0, `f64`s are so
+        // dense that this would take very long, so there are at most 130 bisections. Then, the
+        // interval is shorter than any useful distance.
         for _ in 0..130 {
             let middle = low + (high - low) / 2.0;
             if middle == low || middle == high {

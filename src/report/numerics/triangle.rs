@@ -23,7 +23,7 @@ pub const CASES: &[Case] = &[
     Case { id: "T7", title: "vertices behind the eye", bound: 2.0, subject: Seen(around) },
 ];
 
-/// Lengths of a triangle's sides, in metres. They are those of the triangle in
+/// Lengths of a triangle's sides, in metres. They are taken from the triangle in
 /// `examples/figure_9_9.scn`.
 const SIDES: DVec3 = dvec3(2.0, 2.0, 1.0);
 
@@ -54,10 +54,9 @@ fn slivers(random: &mut CaseRng) -> CaseScene {
 /// triangles can share an edge without any rounding.
 const LATTICE: DVec3 = dvec3(15.0, 15.0, 18.0);
 
-/// Data of the edges of a triangle with the sides [`LATTICE`]. Each edge is shared with a second
-/// triangle, which is rotated by 180°. The first item is the centroid of the second triangle, and
-/// the second item contains some points of the edge. The coordinates of both items are relative to
-/// the first triangle's centroid.
+/// Edges that a triangle with the sides [`LATTICE`] can share with a second such triangle, which is
+/// rotated by 180°. For each edge, contains the centroid of the second triangle, and some points of
+/// the edge. All coordinates are relative to the first triangle's centroid.
 #[rustfmt::skip]
 const SHARED: [([f64; 2], &[[f64; 2]]); 3] = [
     ([0.0, -8.0], &[[-9.0, -4.0], [-4.0, -4.0], [0.0, -4.0], [7.0, -4.0], [9.0, -4.0]]),
@@ -85,10 +84,10 @@ fn shared_edges(random: &mut CaseRng) -> CaseScene {
     input(camera(eye, middle), &shapes)
 }
 
-/// Returns two triangles that share an edge and face the camera. With `size` as the unit of length,
-/// the vertices and some points of the edge have integer coordinates. From the corner of one pixel
-/// to the next, the point that is seen moves by 1. Therefore, the corners of some pixels show
-/// exactly a point of the edge.
+/// Returns two triangles that share an edge and face the camera. In units of `size`, the vertices
+/// and some points of the edge have integer coordinates, and the points that are seen at the
+/// corners of neighbouring pixels are 1 apart. So the corners of some pixels show exactly a point
+/// of the edge.
 fn lattice_points(random: &mut CaseRng) -> CaseScene {
     let size = libm::exp2(random.whole(-8, 8));
     let (other, points) = random.pick(&SHARED);
