@@ -1,8 +1,8 @@
 //! Charts of error against time and of error against samples, as SVG.
 //!
-//! Both axes are logarithmic. Each method's line has its name at the end, so that no legend is
-//! needed. Markers and dashes distinguish the lines even in black and white. Black is written as
-//! CSS's `currentColor`, so that it becomes light on a dark page.
+//! Both axes are logarithmic. At the end of each line, the method's name is written, so that no
+//! legend is needed. Markers and dashes distinguish the lines even in black and white. Black is
+//! written as CSS's `currentColor`, so that black marks become light on a dark page.
 
 use std::ops::Range;
 
@@ -27,12 +27,12 @@ use super::{
 };
 use crate::{diagnostic::escaped, numbers};
 
-/// Width and height of a chart, in pixels. On a phone, whose screen is about 400 CSS pixels wide, a
-/// larger chart would be reduced so much that its labels could hardly be read.
+/// Width and height of a chart, in pixels. On a phone, whose screen is about 400 CSS pixels wide,
+/// the labels of a larger chart could hardly be read.
 const SIZE: (u32, u32) = (560, 440);
 
-/// Width of the space for methods' names at the right of a chart, in pixels. The longest name,
-/// `multi_jittered`, fits into it.
+/// Width of the space for the methods' names at the right of a chart, in pixels. It is chosen so
+/// that the longest name, `multi_jittered`, fits.
 const LABELS: i32 = 162;
 
 /// Minimum vertical distance between the methods' names at the right of a chart, in pixels. It is a
@@ -46,8 +46,8 @@ struct HorizontalAxis {
     of: fn(&SeriesPoint) -> f64,
     written: fn(f64) -> String,
     /// The quantity's value for the exact method, for example its CPU time. A vertical line marks
-    /// this value, since the method's error is too small for the chart. `None` if there is no such
-    /// value.
+    /// this value, since the exact method's error is too small for the chart. `None` if no line is
+    /// drawn.
     exact: Option<f64>,
     /// Slopes that short lines show for comparison, each with its label.
     guides: &'static [(f64, &'static str)],
@@ -79,8 +79,8 @@ pub fn against_samples(measured: &Measurement) -> String {
     svg(measured, &samples)
 }
 
-/// Returns the requested errors that a chart marks: those within a factor of 30 of a measured
-/// error. Marking others would make the chart's range too large.
+/// Returns the requested errors that a chart marks. These are within a factor of 30 of a measured
+/// error. If others were marked, the range of the chart would be too large.
 pub fn shown_errors(measured: &Measurement) -> Vec<f64> {
     let points = measured.series.iter().flat_map(|series| &series.points);
     let found: Vec<_> = points.map(|point| point.typical().error).collect();
@@ -187,10 +187,10 @@ fn draw(canvas: Canvas, measured: &Measurement, against: &HorizontalAxis) -> Dra
     canvas.present()
 }
 
-/// Draws the vertical line of the exact method. An arrow at its lower end shows that the method's
-/// error lies below the chart. The other methods' lines run from the upper left to the lower right
-/// of the chart. To avoid them, the label is placed at the lower end of the vertical line if this
-/// line is in the left half of the chart, and otherwise at the upper end.
+/// Draws the vertical line of the exact method at the column `x`. An arrow at its lower end shows
+/// that the exact method's error lies below the chart. The label must avoid the lines of other
+/// methods, which run from the upper left to the lower right. So it is placed at the lower end of
+/// the line in the left half of the chart, and at the upper end in the right half.
 fn draw_exact(canvas: &Canvas, x: i32, columns: &Range<i32>, rows: &Range<i32>) -> Drawn {
     let end = rows.end - 2;
     let head = [(x - 6, end - 10), (x, end), (x + 6, end - 10)];
@@ -205,10 +205,10 @@ fn draw_exact(canvas: &Canvas, x: i32, columns: &Range<i32>, rows: &Range<i32>) 
     write(canvas, "exact", place)
 }
 
-/// Returns the ends of a line that shows a slope, for comparison with the methods' lines. It lies
-/// at the lower left of the chart, where no method's line runs. All such lines begin at the same
-/// point. The point is chosen so that even the steepest line, with the slope −3/4, ends above the
-/// lower edge of the chart, since the line of a requested error may run along this edge.
+/// Returns the ends of a line that shows a slope, for comparison with the methods' lines. The line
+/// lies at the lower left of the chart, where no method's line runs. The lines for all slopes start
+/// at the same point. It is high enough that even the steepest line, with the slope −3/4, ends
+/// above the lower edge of the chart, where the line of a requested error may be.
 fn guide(x: &Range<f64>, y: &Range<f64>, slope: f64) -> [(f64, f64); 2] {
     let at = |part: f64| x.start * libm::pow(x.end / x.start, part);
     let (from, to) = (at(0.18), at(0.5));
@@ -225,7 +225,7 @@ fn letters(size: f64) -> TextStyle<'static> {
     TextStyle::from(("sans-serif", size).into_font())
 }
 
-/// Returns the range of an axis that contains `values`. It is wider by a factor of 1.5 at both
+/// Returns a range of an axis that contains `values`, with a margin of a factor of 1.5 at both
 /// ends.
 fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
     let wider = |(low, high): (f64, f64), value| (low.min(value), high.max(value));
@@ -233,13 +233,13 @@ fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
     if low <= high {
         low / 1.5..high * 1.5
     } else {
-        // If there are no values, any range will do.
+        // Without values, any range is suitable.
         0.1..1.0
     }
 }
 
-/// Returns a logarithmic axis. It has labels at 1, 2 and 5 times the powers of ten or, if these
-/// would be more than five labels, only at the powers. Grid lines are at 1 to 9 times the powers.
+/// Returns a logarithmic axis. Its labels are at 1, 2 and 5 times the powers of ten. If these are
+/// more than five labels, they are only at the powers. Grid lines are at 1 to 9 times the powers.
 fn axis(ends: &Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
     let marks = |digits: &[i32]| -> Vec<f64> {
         let powers = libm::log10(ends.start).floor() as i32..=libm::log10(ends.end) as i32;
@@ -258,20 +258,20 @@ fn axis(ends: &Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
 }
 
 /// Returns the vertical positions, in pixels, of the methods' names at the right of a chart. Each
-/// is near the end of the method's line, given in `ends`, and no two names overlap.
+/// name is near the end of its line, which `ends` contains, and no two names overlap.
 fn spread_out(ends: &[CanvasPoint], rows: &Range<i32>) -> Vec<i32> {
     let mut order: Vec<_> = (0..ends.len()).collect();
     order.sort_by_key(|&at| ends[at].1);
     let mut heights = vec![0; ends.len()];
-    // From the top downwards, each name is placed at the end of its line or, if that would cover
-    // the name above, directly below that name.
+    // From the top downwards, each name is placed at the height of its line's end. If it would
+    // cover the name above, it is placed directly below that name.
     let mut free = rows.start;
     for &at in &order {
         heights[at] = ends[at].1.max(free);
         free = heights[at] + LABEL_HEIGHT;
     }
-    // Names that would end below the chart are moved up, and so are the names above them if they
-    // would overlap.
+    // Names that would extend below the chart are moved up. If they would then overlap the names
+    // above, these are moved up, too.
     let mut free = rows.end;
     for &at in order.iter().rev() {
         heights[at] = heights[at].min(free);

@@ -1,19 +1,20 @@
-//! Estimates of the samples and the time that each method needs to reduce its error to a given
-//! value, and a ranking of the methods by CPU time.
+//! Estimates how many samples and how much time each method needs to reduce its error to a given
+//! value. Ranks the methods by CPU time.
 
 use super::results::{
     EndSlope, LEAST_BEND, Measurement, MethodSeries, Run, SeriesPoint, bend, end_slope,
 };
 use crate::scene::Method;
 
-/// Estimate of what a method needs to reduce its error to a given value.
+/// Estimate of the samples and the time that a method needs to reduce its error to a given value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// Samples per pixel; `None` for the exact method, which uses no samples.
     pub per_pixel: Option<f64>,
     /// Estimated CPU time, in seconds.
     pub cpu: f64,
-    /// Least and greatest CPU time, in seconds, among `cpu` and the estimates from single runs.
+    /// Least and greatest CPU time, in seconds. They are taken over `cpu` and the estimates from
+    /// each single run.
     pub cpu_runs: [f64; 2],
     /// Estimated elapsed time, in seconds.
     pub wall: f64,
@@ -23,19 +24,19 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Returns whether this method may be as fast as the `fastest` one. This is assumed if the CPU
-    /// time of one method lies within the range of the other method's single runs.
+    /// Returns whether this method may be as fast as the `fastest` one. It may be if the CPU time
+    /// of either method lies within the range of the other method's single runs.
     fn is_as_fast_as(&self, fastest: &Self) -> bool {
         self.cpu <= fastest.cpu_runs[1] || self.cpu_runs[0] <= fastest.cpu
     }
 }
 
-/// The methods that can reduce their error to a given value, ranked by the CPU time that they need
-/// for it.
+/// Ranking of the methods that can reduce their error to a given value, by the CPU time that they
+/// need.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranking {
-    /// The method with the least CPU time, and the methods whose CPU times do not clearly differ
-    /// from this time.
+    /// The method with the least CPU time, and the methods that may be equally fast because their
+    /// CPU times do not clearly differ from it.
     pub fastest: Vec<(Method, Estimate)>,
     /// The other methods, sorted by CPU time.
     pub others: Vec<(Method, Estimate)>,
@@ -44,14 +45,14 @@ pub struct Ranking {
 impl Measurement {
     /// Estimates the samples and the time that a method needs to reduce its error to `error`.
     /// Returns `None` if more samples do not reduce the method's error. Also returns `None` if
-    /// `error` is at most the root mean square error bound of the exact picture, since such small
-    /// errors cannot be measured.
+    /// `error` is at most the root mean square of the exact picture's error bounds, since such
+    /// small errors cannot be measured.
     pub fn estimate(&self, series: &MethodSeries, error: f64) -> Option<Estimate> {
         self.tells(error).then(|| series.estimate(error)).flatten()
     }
 
     /// Estimates the time that the exact method needs. Returns `None` if it was not measured, or if
-    /// `error` is at most the root mean square error bound of the exact picture.
+    /// `error` is at most the root mean square of the exact picture's error bounds.
     pub fn exact_estimate(&self, error: f64) -> Option<Estimate> {
         let runs = self.exact.as_ref().filter(|_| self.tells(error))?;
         let Run { cpu, wall, .. } = Run::typical(runs);
@@ -68,15 +69,14 @@ impl Measurement {
         error > self.reference.root_mean_square_bound()
     }
 
-    /// Ranks the methods that can reduce their error to `error`, by the CPU time that they need for
-    /// it. Methods with extrapolated estimates come last, since such estimates are uncertain.
+    /// Ranks the methods that can reduce their error to `error` by the CPU time that they need.
+    /// Methods with extrapolated estimates come last, since these estimates are uncertain.
     pub fn ranking(&self, error: f64) -> Ranking {
         let estimate = |it: &MethodSeries| Some((it.method, self.estimate(it, error)?));
         let sampled = self.series.iter().filter_map(estimate);
         let exact = self.exact_estimate(error).map(|it| (Method::Exact, it));
         let mut all: Vec<_> = sampled.chain(exact).collect();
-        // If the system does not report CPU times, the estimates are NaN, and there is nothing to
-        // rank.
+        // If the system does not report CPU times, all estimates are NaN, so no methods are ranked.
         all.retain(|(_, estimate)| estimate.cpu.is_finite());
         all.sort_by(|(_, a), (_, b)| {
             let measured_first = a.is_extrapolated.cmp(&b.is_extrapolated);
@@ -100,11 +100,11 @@ impl MethodSeries {
     /// Returns the smallest measured number of samples if it suffices. Returns `None` if more
     /// samples do not reduce the error.
     ///
-    /// The error is assumed to be proportional to a power of the number of samples, which is a
-    /// straight line on logarithmic axes. Between two measured numbers of samples, the line goes
+    /// The error is assumed to be proportional to a power of the number of samples, so it is a
+    /// straight line on logarithmic axes. Between two measured numbers of samples, this line goes
     /// through both points. Beyond the last measured number, it starts at the last point, and its
-    /// slope is fitted to the last three points. Times are assumed to grow linearly with the
-    /// samples.
+    /// slope is fitted to the last three points. Times are assumed to grow linearly with the number
+    /// of samples.
     pub fn estimate(&self, error: f64) -> Option<Estimate> {
         let estimate = |run: &dyn Fn(&SeriesPoint) -> Run| {
             let step = |point: &SeriesPoint| (point.per_pixel as f64, run(point));
@@ -122,13 +122,13 @@ impl MethodSeries {
 
     fn estimate_by(&self, steps: &[Measured], error: f64) -> Option<Estimate> {
         let (&(first, _), &(last, last_run)) = (steps.first()?, steps.last()?);
-        // Index of the smallest number of samples from which on all measured errors are small
+        // Index of the first number of samples for which the error, and all later errors, are small
         // enough.
         let enough = steps.iter().rposition(|(_, run)| run.error > error);
         let enough = enough.map_or(0, |last| last + 1);
         let per_pixel = match steps.get(enough) {
-            // Fewer samples may suffice, but were not measured, so the smallest measured number is
-            // returned.
+            // Even the smallest measured number suffices. Fewer samples may suffice, too, but they
+            // were not measured.
             Some(_) if enough == 0 => first,
             Some(many) => self.between(&steps[enough - 1], many, error),
             None => {
@@ -145,8 +145,9 @@ impl MethodSeries {
         })
     }
 
-    /// Interpolates the number of samples per pixel at which the error is `error`. It lies between
-    /// two measured numbers: with `few` samples the error is too large, and with `many` it is not.
+    /// Interpolates the number of samples per pixel at which the error is `error`. The number lies
+    /// between two measured ones: with `few` samples, the error is too large, and with `many`, it
+    /// is small enough.
     fn between(&self, (few, of_few): &Measured, (many, of_many): &Measured, error: f64) -> f64 {
         let share = if of_many.error == 0.0 {
             // An error of 0 has no logarithm, so `many` samples are returned.
@@ -162,10 +163,10 @@ impl MethodSeries {
     }
 }
 
-/// Returns the slope along which a line of errors is extrapolated beyond its last point. This is
-/// the slope fitted to the last three points or, if the line bends there, the slope through the
-/// last two. Returns `None` if the numbers of samples are too close to each other, or if more
-/// samples hardly reduce the error, since a small slope may be noise.
+/// Returns the slope along which a line of errors is extrapolated beyond its last point. It is
+/// fitted to the last three points or, if the line bends there, to the last two. Returns `None` if
+/// the numbers of samples are too close to each other. Also returns `None` if more samples hardly
+/// reduce the error, since a small slope may be noise.
 fn slope_beyond(steps: &[Measured]) -> Option<f64> {
     let points = steps.iter().map(|(per_pixel, run)| (*per_pixel, run.error));
     let points: Vec<_> = points.collect();
@@ -181,8 +182,8 @@ fn slope_beyond(steps: &[Measured]) -> Option<f64> {
 
 /// Returns the least number of samples that is at least `per_pixel` and equals n·n or n·(n + 1) for
 /// an integer n. Multi-jittered sampling divides the pixel into a grid with a cell for each sample.
-/// For these numbers, the grid is nearly square. For others, it may be a long strip (for a prime
-/// number, a single row), so that the error may exceed the interpolated one.
+/// For the returned numbers, the grid is nearly square. For others, it may be a long strip, or for
+/// a prime number a single row, and the error may then be larger than interpolated.
 fn oblong(per_pixel: f64) -> f64 {
     let root = per_pixel.sqrt().floor();
     let next = root + 1.0;
@@ -204,8 +205,8 @@ fn time_at(steps: &[Measured], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     let slope = |a: &(f64, f64), b: &(f64, f64)| (b.1 - a.1) / (b.0 - a.0);
     match times.windows(2).find(around) {
         Some([a, b]) => a.1 + slope(a, b) * (per_pixel - a.0),
-        // Measured times may fall by chance although the number of samples grows. In fact, more
-        // samples never need less time, so a negative slope is replaced by 0.
+        // More samples never need less time, but measured times may decrease by chance. So a
+        // negative slope is replaced by 0.
         _ => last.1 + slope(first, last).max(0.0) * (per_pixel - last.0),
     }
 }

@@ -13,9 +13,9 @@ use super::{
 };
 
 /// A row of the CSV file. Times are medians in seconds: CPU time in `time`, and elapsed time in
-/// `wall`. Errors are in linear light. The exact method uses no samples, so its row has an error
-/// bound instead of the number of samples, the error and the slope. The slope is also left out if
-/// it changes clearly between the last measurements.
+/// `wall`. Errors are in linear light. The exact method uses no samples, so its row contains an
+/// error bound instead of the number of samples, the error and the slope. The slope is also left
+/// out if the line of errors bends ([`EndSlope`]).
 #[derive(Default, Serialize)]
 struct CsvRow {
     method: &'static str,
@@ -34,7 +34,7 @@ struct CsvRow {
 ///
 /// # Errors
 ///
-/// A row cannot be written.
+/// Fails if a row cannot be written.
 pub fn to_csv(measured: &Measurement) -> io::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for series in &measured.series {

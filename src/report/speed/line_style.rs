@@ -1,5 +1,5 @@
 //! Line styles of the sampling methods in a chart: colours, markers and dashes. Methods whose lines
-//! usually lie close to each other differ in all three.
+//! usually lie close to each other differ in colour, marker and dashes.
 
 use std::io;
 

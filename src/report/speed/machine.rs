@@ -7,7 +7,8 @@ use crate::files::read_system_text;
 /// Properties of a machine that affect the time of renders.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Machine {
-    /// Name of the processor's model, or its architecture if the system does not tell the model.
+    /// Name of the processor's model. If the system does not report it, the processor's
+    /// architecture.
     pub processor: String,
     /// Number of processors that this process may use.
     pub processors: usize,

@@ -1,5 +1,5 @@
-//! Counts the pixels of a picture that show more than one colour. Distinguishes pixels that an edge
-//! crosses from those that show only a checkerboard.
+//! Counts the pixels of a picture that show several colours. Distinguishes pixels that an edge
+//! crosses from pixels that show only a checkerboard.
 
 use crate::{
     exact::Integrator,
@@ -7,17 +7,18 @@ use crate::{
     tracer::{GRID, World},
 };
 
-/// Maximum work of counting the pixels with several colours. One unit is about 50 ns, so the
-/// maximum is about two seconds. The pixels that are not reached within this limit are treated as
-/// having a single colour. With a smaller limit, more pixels would remain uncounted; with a larger
+/// Maximum work of counting the pixels with several colours. One unit is about 50 ns, so counting
+/// takes at most about two seconds. Pixels that are not reached within this limit are treated as
+/// having a single colour. With a smaller limit, more pixels would not be reached. With a larger
 /// one, a report, which usually takes 45 s, would take noticeably longer.
 const MAX_WORK: u64 = 40_000_000;
 
 /// Fractions, from 0 to 1, of a picture's pixels in which sampling methods can err.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixture {
-    /// Fraction of the picture's pixels that show an edge: several objects, several faces of a box
-    /// with coloured faces, or an object and the background. Both sides may have the same colour.
+    /// Fraction of the picture's pixels that show an edge, i.e. several objects, several faces of a
+    /// box with coloured faces, or an object and the background. The colours on both sides of an
+    /// edge may be equal.
     pub edges: f64,
     /// Fraction of the picture's pixels that show only a checkerboard, in both of its colours.
     pub board: f64,
@@ -27,8 +28,7 @@ pub struct Mixture {
 }
 
 impl Mixture {
-    /// Counts the pixels that show an edge or both colours of a checkerboard, in the picture of a
-    /// scene.
+    /// Computes the fractions for the picture of a scene.
     pub fn of(scene: &Scene) -> Self {
         let surfaces = Mixed::among(&World::by_surface(scene), MAX_WORK);
         let is_board = |shape: &Shape| matches!(shape, Shape::Checkerboard(_));
@@ -39,7 +39,7 @@ impl Mixture {
             Mixed::default()
         };
         let edges = surfaces.pixels.iter().filter(|has_edge| **has_edge);
-        // A pixel that shows one surface in several colours shows a checkerboard alone.
+        // If a pixel shows several colours of a single surface, the surface is a checkerboard.
         let both = surfaces.pixels.iter().zip(&colors.pixels);
         let board = both.filter(|(has_edge, has_colors)| **has_colors && !**has_edge);
         let share = |count: usize| count as f64 / surfaces.pixels.len() as f64;
@@ -51,12 +51,12 @@ impl Mixture {
     }
 }
 
-/// The pixels that show several entries of a world's palette. An entry is a colour or, in a world
-/// made by [`World::by_surface`], a surface.
+/// Result of searching a picture for pixels that show several entries of a world's palette. An
+/// entry is a colour or, in a world made by [`World::by_surface`], a surface.
 #[derive(Default)]
 struct Mixed {
-    /// For each pixel, row by row: whether it shows several entries of the palette, i.e. several
-    /// colours or surfaces.
+    /// Whether each pixel shows several entries of the palette, i.e. several colours or surfaces.
+    /// Pixels are in row order.
     pixels: Vec<bool>,
     /// Work that was spent, in units of about 50 ns.
     work: u64,

@@ -1,10 +1,11 @@
-//! Measures how the error of each sampling method falls with time.
+//! Measures how the error of each sampling method decreases with time and with the number of
+//! samples.
 //!
 //! A [`Request`] contains the methods, the numbers of samples and the number of runs. [`measure`]
-//! times renders of a scene and compares them with the exact picture. Its result is a
-//! [`Measurement`], which is plain data. It is written as a table for a terminal ([`text()`]), as
-//! files for programs ([`to_csv`], [`to_json`]), as charts ([`against_time`], [`against_samples`]),
-//! and as an HTML page with all of these ([`page()`]).
+//! times renders of a scene and compares them with the exact picture. The result is a
+//! [`Measurement`], which is plain data. A measurement is written as a table for a terminal
+//! ([`text()`]), as files for programs ([`to_csv`], [`to_json`]), as charts ([`against_time`],
+//! [`against_samples`]), and as an HTML page with a table, charts and pictures ([`page()`]).
 
 mod chart;
 mod estimate;

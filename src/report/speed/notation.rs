@@ -7,7 +7,7 @@ use crate::numbers;
 pub const UNKNOWN: &str = "–";
 
 /// Formats an error that the user asked for, with all its digits. If a fraction such as 1/256 is
-/// shorter, it is used instead.
+/// shorter, writes the fraction.
 pub fn asked_error(error: f64) -> String {
     let decimal = if error < 1e-4 {
         format!("{error:e}")
@@ -57,11 +57,11 @@ pub fn samples(estimate: &Estimate) -> String {
     }
 }
 
-/// Word in a table for the slope of a line that bends.
+/// Word that a table shows instead of the slope if a line bends.
 pub const BENDS: &str = "bends";
 
-/// Formats a slope, with its standard error if it has one. A line that bends gets the word
-/// [`BENDS`] instead. `None` becomes [`UNKNOWN`].
+/// Formats the slope of a line, with its standard error if it is known. If the line bends, the
+/// result is the word [`BENDS`]. `None` becomes [`UNKNOWN`].
 pub fn slope(slope: Option<EndSlope>) -> String {
     let signed = |number: f64| format!("{number:.2}").replace('-', "−");
     match slope {
@@ -75,13 +75,13 @@ pub fn slope(slope: Option<EndSlope>) -> String {
 }
 
 /// Formats a factor with two significant digits. `None` and factors above 10⁶ become [`UNKNOWN`],
-/// since factors computed from measured slopes are not that reliable.
+/// since measured slopes are not accurate enough for such large factors.
 pub fn factor(factor: Option<f64>) -> String {
     let known = factor.filter(|factor| *factor <= 1e6);
     known.map_or(UNKNOWN.to_owned(), |factor| significant(factor, 2))
 }
 
-/// Formats a share, 0 to 1, as a percentage with two significant digits.
+/// Formats a fraction from 0 to 1 as a percentage with two significant digits.
 pub fn percent(share: f64) -> String {
     match share {
         0.0 => "none".to_owned(),

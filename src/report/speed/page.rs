@@ -22,14 +22,14 @@ use crate::{
 };
 
 /// Maximum width and height of the whole picture on the page, in pixels. A larger picture is
-/// reduced, so that the file stays small. This size still shows the objects clearly.
+/// reduced, so that the file stays small. At this size, objects are still seen clearly.
 const WHOLE: [u32; 2] = [640, 480];
 
 /// Returns the HTML page. It has a section for each scene.
 ///
 /// # Errors
 ///
-/// There is not enough memory for the pictures.
+/// Fails if there is not enough memory for the pictures.
 pub fn page(measurements: &[Measurement]) -> io::Result<String> {
     let sections = measurements.iter().map(section);
     let sections = sections.collect::<io::Result<Vec<_>>>()?;
@@ -104,14 +104,13 @@ fn shown_methods(measured: &Measurement) -> Vec<(&'static str, &MethodPicture)> 
     shown.collect()
 }
 
-/// Pictures that compare the methods. All show the same part of the scene's picture.
+/// Pictures for comparing the methods. All show the same area of the scene's picture.
 #[derive(Default)]
 struct Pictures {
-    /// Description of the part of the scene's picture that is shown.
+    /// Description of the area that is shown.
     part: String,
-    /// Difference that the heat maps draw white, in steps of 8-bit sRGB. It is the largest
-    /// difference in the part that is shown, so that the differences are seen even if all are
-    /// small.
+    /// Difference that heat maps show as white, in steps of 8-bit sRGB. It is the largest
+    /// difference in the area that is shown, so that differences are seen even if all are small.
     white: f64,
     /// The exact picture, followed by a picture for each method. The list is empty if no method has
     /// a picture.
@@ -159,8 +158,8 @@ fn pictures(measured: &Measurement) -> io::Result<Pictures> {
     })
 }
 
-/// Tolerance by which the page draws the differences from the exact picture: even the smallest
-/// difference is drawn.
+/// Tolerance for differences from the exact picture. It is 0, so that heat maps show even the
+/// smallest difference.
 const EVERY_DIFFERENCE: Tolerance<'_> = Tolerance {
     steps: 0.0,
     bounds: None,
@@ -183,8 +182,8 @@ fn whole(measured: &Measurement) -> io::Result<Value> {
 const MAGNIFIED: u32 = 5;
 
 /// Returns the values that the page's template needs for a picture with the title `name` and the
-/// caption `about`. If `difference` is given, this heat map of the differences from the exact
-/// picture is shown below the picture.
+/// caption `about`. `difference` is a heat map of the differences from the exact picture, which is
+/// shown below the picture if it is given.
 fn picture(film: &Film, difference: Option<&Film>, name: &str, about: String) -> io::Result<Value> {
     let difference = difference.map(film::data_uri).transpose()?;
     Ok(value! {

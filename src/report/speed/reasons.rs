@@ -7,8 +7,8 @@ use super::{
 use crate::scene::Method;
 
 /// Returns sentences that explain why the methods differ in this scene: in which pixels they can
-/// err, how the error falls there, and how the exact method works. If no method was measured or all
-/// pixels have a single colour, only the sentence about the pixels is returned.
+/// err, how the error decreases there, and how the exact method works. If no method was measured,
+/// or if all pixels have a single colour, returns only the sentence about the pixels.
 pub fn reasons(measured: &Measurement) -> Vec<String> {
     let mixture = measured.mixture;
     let edges = percent(mixture.edges);
@@ -76,10 +76,9 @@ fn compared(measured: &Measurement, error: f64) -> Option<String> {
     })
 }
 
-/// Compares the exact method with the fastest sampling method: says how many samples per pixel the
-/// sampling method computes in the CPU time that the exact method needs. Returns `None` if the
-/// exact method or every sampling method lacks a measurement, or if the number of samples is below
-/// 1.
+/// Compares the exact method with the fastest sampling method. Says how many samples per pixel the
+/// sampling method computes in the CPU time that the exact method needs. Returns `None` if this
+/// number is below 1, or if the exact method or all sampling methods were not measured.
 fn in_exact_time(measured: &Measurement) -> Option<String> {
     let exact = measured.exact_estimate(1.0)?;
     let most = measured.series.iter().filter_map(|series| {

@@ -1,5 +1,5 @@
-//! The request for a measurement, and its results. From the results, this module also computes
-//! slopes, typical values of several runs, and the samples that can be rendered in a given time.
+//! The request for a measurement, and its results. Also computes slopes, typical values of several
+//! runs, and the number of samples that can be rendered in a given time.
 
 use std::time::Duration;
 
@@ -24,11 +24,11 @@ pub struct MeasuredScene {
 pub struct Request {
     /// Methods to measure. They may include `exact`.
     pub methods: Vec<Method>,
-    /// Numbers of samples per pixel to measure. If empty, these are 1, 4, 16, …, as many as there
-    /// is time for.
+    /// Numbers of samples per pixel to measure. If empty, 1, 4, 16, … are measured, as long as
+    /// there is time.
     pub samples: Vec<u64>,
-    /// Number of runs of each method with each number of samples. If `None`, there are as many runs
-    /// as there is time for.
+    /// Number of runs of each method with each number of samples. If `None`, runs are made as long
+    /// as there is time.
     pub runs: Option<u64>,
     /// Values to which methods should reduce their errors, in linear light. For each value, the
     /// report estimates how many samples and how much time each method needs.
@@ -55,8 +55,8 @@ pub struct Measurement {
     pub errors: Vec<f64>,
     /// The exact picture, which is computed without samples. All renders are compared with it.
     pub reference: Exact,
-    /// Fractions of the picture's pixels that show several colours. Only in these pixels can a
-    /// sampling method err.
+    /// Fractions of the picture's pixels that show several colours. Sampling methods can err only
+    /// in these pixels.
     pub mixture: Mixture,
     /// Runs of the exact method; `None` if it was not requested.
     pub exact: Option<Vec<Run>>,
@@ -73,23 +73,23 @@ pub struct MethodSeries {
     pub method: Method,
     /// Results for each number of samples per pixel, in ascending order.
     pub points: Vec<SeriesPoint>,
-    /// Picture by which an HTML page compares the methods. Its number of samples is chosen so that
-    /// all methods take about the same CPU time. `None` if it was not rendered.
+    /// The method's picture on the HTML page, for comparing the methods. Its number of samples is
+    /// chosen so that all methods take about the same CPU time. `None` if it was not rendered.
     pub picture: Option<MethodPicture>,
 }
 
 /// Results of one method with one number of samples per pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeriesPoint {
-    /// Number of samples per pixel. The method `scatter` spreads samples unevenly; for it, this is
-    /// the mean.
+    /// Number of samples per pixel. For the method `scatter`, which spreads samples unevenly, it is
+    /// the mean number.
     pub per_pixel: u64,
     /// Timed renders with this number of samples.
     pub runs: Vec<Run>,
 }
 
 /// Slope of a method's error against the number of samples, both logarithmic, for the last three
-/// measured numbers of samples. With the slope s, the error is about proportional to the number of
+/// measured numbers of samples. If the slope is s, the error is about proportional to the number of
 /// samples to the power s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EndSlope {
@@ -107,53 +107,54 @@ pub struct EndSlope {
 
 impl EndSlope {
     /// Minimum value of −`slope` at which the report says that more samples reduce the error. A
-    /// smaller value may come from noise in the measurement. For independent samples, the value is
-    /// 0.5, far above the minimum.
+    /// smaller value may be noise in the measurement. For independent samples, −`slope` is 0.5, far
+    /// above this minimum.
     pub(super) const LEAST: f64 = 0.05;
 
-    /// Returns the factor by which the error falls if there are four times as many samples,
-    /// 4^−`slope`. Returns `None` if more samples do not help, or if the line bends.
+    /// Returns the factor by which four times as many samples divide the error, 4^−`slope`. Returns
+    /// `None` if more samples do not reduce the error, or if the line bends.
     pub fn divisor(&self) -> Option<f64> {
         self.settled().map(|slope| libm::pow(4.0, -slope))
     }
 
-    /// Returns the factor by which the number of samples must grow for a tenth of the error,
-    /// 10^(−1/`slope`). Returns `None` if more samples do not help, or if the line bends.
+    /// Returns the factor by which the number of samples must grow to reduce the error to a tenth,
+    /// 10^(−1/`slope`). Returns `None` if more samples do not reduce the error, or if the line
+    /// bends.
     pub fn cost_of_a_tenth(&self) -> Option<f64> {
         self.settled().map(|slope| libm::pow(10.0, -1.0 / slope))
     }
 
-    /// Returns the slope, or `None` if more samples do not reduce the error, or if the line bends,
-    /// so that the slope for more samples is unknown.
+    /// Returns the slope. Returns `None` if more samples do not reduce the error, or if the line
+    /// bends, because the slope for more samples is then unknown.
     fn settled(&self) -> Option<f64> {
         (!self.bends && self.slope < -Self::LEAST).then_some(self.slope)
     }
 }
 
-/// Returns the last three elements of a method's results, or all if there are fewer. The first
-/// results would distort the slope, because with few samples, the errors of some methods fall
-/// differently. For example, `scatter` leaves pixels without samples, and the error of `n_rooks`
-/// falls faster at first than later.
+/// Returns the last three of a method's results, or all if there are fewer. The other results would
+/// distort the slope, because the errors of some methods decrease differently with few samples. For
+/// example, `scatter` leaves pixels without samples, and the error of `n_rooks` decreases faster at
+/// first.
 pub fn end<T>(points: &[T]) -> &[T] {
     &points[points.len().saturating_sub(3)..]
 }
 
 /// Minimum ratio of the largest to the smallest number of samples to which a slope is fitted. Over
 /// a smaller range, the slope could depend more on noise than on the method. It could also depend
-/// on how a method divides a pixel into a grid: for 17 samples, for example, the grid is a single
+/// on how the method divides a pixel into a grid. For 17 samples, for example, the grid is a single
 /// row.
 pub const LEAST_SPAN: f64 = 4.0;
 
-/// Minimum difference between the slopes of a line's last two segments at which the line is said to
-/// bend. In ordinary scenes, the slopes of methods with strata become less steep by up to 0.08 from
-/// segment to segment. Larger differences occur if a method, such as `scatter`, leaves pixels
-/// without samples, or if a grid of samples is aligned with an edge. A smaller minimum would report
-/// bends in ordinary scenes.
+/// Minimum difference between the slopes of a line's last two segments at which the report says
+/// that the line bends. In ordinary scenes, the slopes of methods with strata differ by up to 0.08,
+/// so a smaller minimum would report bends there. Larger differences occur if a method, such as
+/// `scatter`, leaves pixels without samples, or if a grid of samples is aligned with an edge.
 pub const LEAST_BEND: f64 = 0.1;
 
 /// Returns the slope at the end of the line through `points` on logarithmic axes, fitted to the
-/// last three points. A point is a number of samples and an error. Returns `None` if there are
-/// fewer than two points, if they span less than [`LEAST_SPAN`], or if an error is 0.
+/// last three points. A point consists of a number of samples and an error. Returns `None` if there
+/// are fewer than two points, if they span less than the factor [`LEAST_SPAN`], or if an error is
+/// 0.
 pub fn end_slope(points: &[(f64, f64)]) -> Option<f64> {
     let points = end(points);
     let (first, last) = (points.first()?.0, points.last()?.0);
@@ -184,7 +185,7 @@ pub struct Run {
     pub error: f64,
 }
 
-/// A method's picture by which an HTML page compares the methods.
+/// A method's picture on the HTML page, for comparing the methods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodPicture {
     /// Samples per pixel of the picture.
@@ -193,9 +194,9 @@ pub struct MethodPicture {
     pub cpu: f64,
     /// Root mean square error of the whole picture, in linear light.
     pub rmse: f64,
-    /// The part of the picture that the page shows. It is the same for all methods.
+    /// The area of the picture that the page shows. It is the same for all methods.
     pub part: Area,
-    /// Pixels in the area that the page shows.
+    /// Pixels of the area `part`.
     pub film: Film,
 }
 
@@ -270,8 +271,8 @@ impl Measurement {
         Area::whole(self.reference.film.width(), self.reference.film.height())
     }
 
-    /// Returns the number of runs, i.e. how often each render was repeated. After an interruption,
-    /// it is the greatest number for any method.
+    /// Returns the number of runs, i.e. how often each render was made. After an interruption,
+    /// methods may have different numbers of runs, and the greatest is returned.
     pub fn runs(&self) -> usize {
         let sampled = self.series.iter().flat_map(|series| &series.points);
         let most = sampled.map(|point| point.runs.len()).max();
