@@ -1,5 +1,5 @@
-//! Draws the figure `camera`: from outside, it shows the camera's eye, one ray, and the window,
-//! i.e. the rectangle in space that the picture shows.
+//! Draws the figure `camera`. It shows three things from outside: the camera's eye, one ray, and
+//! the window, i.e. the rectangle in space that the picture shows.
 
 use glam::{DVec2, DVec3};
 
@@ -19,29 +19,30 @@ use crate::{
 };
 
 /// Height of the figure, in SVG units, before empty space is cropped. The figure's width is 680.
-/// The scene is scaled to fit; in a lower figure, it would be smaller.
+/// The scene is scaled to fit, so it would be smaller in a lower figure.
 const HEIGHT: f64 = 460.0;
 
-/// Maximum length of a ray that is drawn to its end, as a multiple of the distance from the eye to
-/// a corner of the window. Only the start of a longer ray is drawn. With a larger value, the window
-/// could become too small to be recognised.
+/// Maximum length of a ray that is drawn completely, as a multiple of the distance from the eye to
+/// a corner of the window. Of a longer ray, only the start is drawn. With a larger value, the
+/// window could become too small to be recognised.
 const FARTHEST: f64 = 15.0;
 
-/// Maximum number of objects that are drawn, not counting checkerboards. These are the object that
-/// the ray meets and the first ones in the scene. With many more, the figure would be confusing.
+/// Maximum number of objects that are drawn, not counting checkerboards. The object that the ray
+/// meets is drawn first, and then the first objects of the scene. With many more, the figure would
+/// be confusing.
 const MOST_OBJECTS: usize = 60;
 
 /// Width and height, in SVG units, below which a window is too small to be recognised. The figure
 /// of such a window says so in words.
 const TINY: f64 = 16.0;
 
-/// Approximate maximum number of lines on a checkerboard in each direction. If there are more
-/// squares, only every second line, or every third, and so on, is drawn. More lines would hide the
-/// rest of the figure.
+/// Approximate maximum number of lines between a checkerboard's squares, in each direction. If
+/// there are more, only every second line is drawn, or every third, and so on. More lines would
+/// hide the rest of the figure.
 const MOST_LINES: f64 = 14.0;
 
-/// Draws the figure. The ray goes through the middle of `pixel` or, if that is `None`, of a pixel
-/// that shows the largest object.
+/// Draws the figure. The ray goes through the middle of `pixel`. If `pixel` is `None`, it goes
+/// through a pixel near the middle of the largest object.
 pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     let [x, y] = pixel.unwrap_or_else(|| pixel_of_largest(scene));
     let middle = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
@@ -79,7 +80,7 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     let arrow = 0.13 * (max - min).length();
     points.extend([-view.ahead, view.right, view.top].map(|axis| view.eye + axis * arrow));
 
-    // The observer stands at a side from which the ray runs to the right in the figure.
+    // The observer is on the side of the camera from which the ray runs to the right.
     let side = beside(&view);
     let panel = [
         DVec2::new(50.0, 34.0),
@@ -94,7 +95,7 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     let indices = |bodies: &[Body]| bodies.iter().map(|(index, ..)| *index).collect();
     outside.outlines(&mut canvas, "faint dash", scene, indices(&behind));
     outside.objects(&mut canvas, scene, indices(&ahead));
-    // An object that is large compared with the figure is drawn only if the ray meets it.
+    // An object that is too large for the figure is drawn only if the ray meets it.
     let large = met.filter(|met| within.iter().all(|(index, ..)| index != met));
     let large = large.filter(|_| hit.as_ref().is_some_and(|(hit, _)| is_near(hit)));
     let is_board = |index: &usize| scene.objects[*index].shape.checkerboard().is_some();
@@ -104,7 +105,7 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     for corner in corners {
         outside.line(&mut canvas, "faint", &[view.eye, corner]);
     }
-    // In the window, draws the outlines of the objects as the camera sees them.
+    // The window contains the outlines of the objects as the camera sees them.
     let picture = visible_overlays(scene);
     let in_frame = |at: DVec2| view.at_depth(at.clamp(DVec2::ZERO, view.size), facts.d);
     draw_objects(
@@ -207,10 +208,10 @@ fn pixel_of_largest(scene: &Scene) -> [u32; 2] {
 /// Index of an object, and the centre and the radius of its bounding sphere.
 type Body = (usize, DVec3, f64);
 
-/// Returns the objects to draw, at most [`MOST_OBJECTS`], without checkerboards. `reach` is the
-/// distance from the eye, in metres, up to which the figure shows the scene. Objects with a greater
-/// radius are left out, and so are objects that extend beyond 1.5 times this distance. The object
-/// with the index `first` comes first.
+/// Returns the objects to draw, at most [`MOST_OBJECTS`], without checkerboards. The object with
+/// the index `first` comes first. `reach` is the distance from the eye, in metres, up to which the
+/// figure shows the scene. Objects are left out if their radius is at least `reach`, or if they
+/// extend beyond 1.5 times `reach` from the eye.
 fn objects_within(scene: &Scene, reach: f64, first: Option<usize>) -> Vec<Body> {
     let others = (0..scene.objects.len()).filter(|index| Some(*index) != first);
     let bodies = first.into_iter().chain(others).filter_map(|index| {
@@ -224,9 +225,9 @@ fn objects_within(scene: &Scene, reach: f64, first: Option<usize>) -> Vec<Body> 
 }
 
 /// Returns the lines between the squares of the checkerboards that are drawn, at most about
-/// [`MOST_LINES`] in each direction. They cover the bounding box of `points`, the points that the
-/// figure shows. Then adds the corners of each drawn board to `points`. Boards that are more than
-/// `reach` metres above or below the eye, or have very large squares, are left out.
+/// [`MOST_LINES`] in each direction. The lines cover the bounding box of `points`, the points that
+/// the figure shows. The corners of each drawn board are added to `points`. Boards are left out if
+/// they are more than `reach` metres above or below the eye, or if their squares are very large.
 fn boards(scene: &Scene, points: &mut Vec<DVec3>, reach: f64) -> Vec<[DVec3; 2]> {
     let mut lines = Vec::new();
     let (min, max) = bounds3(points);

@@ -1,13 +1,13 @@
 //! Writes a drawing as SVG.
 //!
-//! A drawing consists of marks (lines, arrows and dots), which are drawn in the order in which they
-//! are added, and of labels, each with the point that it names. Labels are placed last, so that
-//! they hide neither marks nor each other. Lengths are rounded to one decimal, so that the file is
-//! the same on every machine.
+//! A drawing consists of marks (lines, arrows and dots) and labels. Marks are drawn in the order in
+//! which they are added. A label names a point. Labels are placed after all marks, so that they
+//! hide neither marks nor each other. Lengths are rounded to one decimal, so that the file is the
+//! same on every machine.
 //!
 //! The style sheet has no CSS variables, since programs for printing, such as librsvg, do not
 //! support them. The colours are those of Okabe and Ito, which colour-blind people can distinguish.
-//! On white, they are darkened until letters have a contrast of 4.5 to 1.
+//! For white pages, they are darkened, so that letters have a contrast of 4.5 to 1.
 
 use std::fmt::Write;
 
@@ -23,8 +23,8 @@ pub const WIDTH: f64 = 680.0;
 /// typographic points.
 const LETTERS: f64 = 18.0;
 
-/// Assumed width of a letter and height of a line of text, in SVG units. The sizes of labels are
-/// estimated from them. The width is the mean of the letters in a wide typeface such as DejaVu
+/// Assumed width of a letter and height of a line of text, in SVG units. They are used to estimate
+/// the sizes of labels. The width is the mean of the letters in a wide typeface such as DejaVu
 /// Sans, so the estimate is large enough for narrower typefaces.
 const LETTER: DVec2 = DVec2::new(10.2, 21.0);
 
@@ -40,26 +40,28 @@ circle{fill:currentColor}.seen{stroke:currentColor;stroke-width:1.5}\
 @media(prefers-color-scheme:dark){.paper{fill:#15181d}.fill{fill-opacity:.65}text{stroke:#15181d}.ink{color:#eceff4}.faint{color:#a3adb8}\
 .blue{color:#6cc0f5}.red{color:#f5a05a}.green{color:#3fcfa5}}";
 
-/// Height of the empty space that a cropped figure keeps above and below its marks, in SVG units.
-/// It is large enough that the marks do not touch the text around the figure.
+/// Height of the empty space above and below the marks of a cropped figure, in SVG units. It is
+/// large enough that the marks do not touch the text around the figure.
 const MARGIN: f64 = 12.0;
 
-/// Cost of a label that covers a line segment of a mark. A label is placed where the sum of its
-/// costs is least. Moving it one step away from its point costs only 6, so a label moves as far
-/// as it may to leave a segment free. With a smaller cost, labels would cover more marks.
+/// Cost of a label for each line segment of a mark that it covers. A label is placed where the sum
+/// of its costs is least. The farthest place costs only about 24 more than the nearest, so a label
+/// is moved rather than placed on a segment. With a smaller cost, labels would cover more marks.
 const MARK: f64 = 40.0;
 
-/// Cost of a label for each filled polygon that it covers in part. Moving a label one step away
-/// from its point costs 6, so a label leaves the polygon if there is free space near it.
+/// Cost of a label for each filled polygon that it overlaps. The farthest place of a label costs
+/// only about 24 more than the nearest, so a label is moved out of a polygon if there is free space
+/// near it.
 const FILL: f64 = 30.0;
 
 /// A drawing, to which marks and labels are added.
 pub struct Canvas {
     size: DVec2,
-    /// Top and bottom of what has been drawn, in SVG units. Paths in SVG notation are ignored.
+    /// Top and bottom of all marks and texts so far, in SVG units. Paths that are given in SVG
+    /// notation are ignored.
     rows: [f64; 2],
     marks: String,
-    /// Line segments that labels should not cover, each with the cost of covering it.
+    /// Line segments that labels should not cover, each with the cost of a label that covers it.
     obstacles: Vec<([DVec2; 2], f64)>,
     /// Convex polygons that labels should not cover.
     fills: Vec<Vec<DVec2>>,
@@ -91,7 +93,8 @@ impl Canvas {
         }
     }
 
-    /// Draws a line through `points`. Labels will avoid it. `class` contains its CSS classes.
+    /// Draws a line through `points`, which labels will avoid. `class` contains the line's CSS
+    /// classes.
     pub fn line(&mut self, class: &str, points: &[DVec2]) {
         let cost = if class.contains("faint") { 1.5 } else { MARK };
         let segments = points.windows(2).map(|ends| ([ends[0], ends[1]], cost));
@@ -99,7 +102,8 @@ impl Canvas {
         self.path(class, points, "");
     }
 
-    /// Fills a convex polygon with a colour of the scene. Labels will avoid it if possible.
+    /// Fills a convex polygon with a colour of the scene. Labels will avoid the polygon if
+    /// possible.
     pub fn fill(&mut self, class: &str, color: Color, points: &[DVec2]) {
         self.fills.push(points.to_vec());
         self.path(class, points, &format!(" style=\"fill:{color}\""));
@@ -127,7 +131,7 @@ impl Canvas {
         }
     }
 
-    /// Draws an arrow whose tip is `to`. Labels will avoid it.
+    /// Draws an arrow from `from` to its tip `to`. Labels will avoid the arrow.
     pub fn arrow(&mut self, class: &str, from: DVec2, to: DVec2) {
         let along = (to - from).normalize_or_zero() * 11.0;
         let side = along.perp() * 0.4;
@@ -141,8 +145,7 @@ impl Canvas {
         self.circle(class, at, radius, "");
     }
 
-    /// Draws a dot that is filled with a colour of the scene, and a ring around it. Labels will
-    /// avoid it.
+    /// Draws a dot with a colour of the scene and a ring around it. Labels will avoid the dot.
     pub fn seen(&mut self, color: Color, at: DVec2, radius: f64) {
         self.circle("seen ink", at, radius, &format!(" style=\"fill:{color}\""));
     }
@@ -160,13 +163,13 @@ impl Canvas {
         );
     }
 
-    /// Adds a label for the point `at`. It is preferably placed on the side that faces away from
-    /// `from`. In the text, words between asterisks are italic.
+    /// Adds a label for the point `at`. It is preferably placed on the side of `at` that faces away
+    /// from the point `from`. In the text, words between asterisks are italic.
     pub fn label(&mut self, class: &'static str, [at, from]: [DVec2; 2], text: impl Into<String>) {
         self.label_any(class, &[at], from, text);
     }
 
-    /// Adds a label for one of the given points: the one at which the label fits best.
+    /// Adds a label for one of the given points. The point is chosen at which the label fits best.
     pub fn label_any(
         &mut self,
         class: &'static str,
@@ -187,8 +190,8 @@ impl Canvas {
         self.note = text.into();
     }
 
-    /// Writes a text at a fixed position. `anchor` is `start`, `middle` or `end`, and says which
-    /// point of the text's base line is at `at`. Words between asterisks are italic.
+    /// Writes a text at the position `at`. `anchor` says which point of the text's base line is
+    /// there: `start`, `middle` or `end`. Words between asterisks are italic.
     pub fn text(&mut self, class: &str, anchor: &str, at: DVec2, text: &str) {
         let mut spans = String::new();
         for (part, text) in text.split('*').enumerate() {
@@ -206,7 +209,7 @@ impl Canvas {
         );
     }
 
-    /// Records that something is drawn from the height `top` to the height `bottom`.
+    /// Records the vertical extent of a mark or text, from `top` to `bottom`.
     fn cover(&mut self, top: f64, bottom: f64) {
         self.rows = [self.rows[0].min(top), self.rows[1].max(bottom)];
     }
@@ -243,7 +246,7 @@ impl Canvas {
         )
     }
 
-    /// Writes each label at the place where its cost is least, near one of its points.
+    /// Writes each label near one of its points, at the position where its cost is least.
     fn place_labels(&mut self) {
         let mut taken: Vec<[DVec2; 2]> = Vec::new();
         for label in std::mem::take(&mut self.labels) {
@@ -276,9 +279,9 @@ impl Canvas {
         }
     }
 
-    /// Returns the cost of placing a label in `rectangle`. It is highest if the label would extend
-    /// beyond the drawing, lower if it would cover labels (`taken`), and lowest if it would cover
-    /// segments of marks (`obstacles`) or filled polygons.
+    /// Returns the cost of placing a label in `rectangle`. The cost is highest if the label extends
+    /// beyond the drawing. It is lower if the label covers other labels (`taken`), and still lower
+    /// if it covers segments of marks (`obstacles`) or filled polygons.
     fn cost(&self, rectangle: [DVec2; 2], taken: &[[DVec2; 2]]) -> f64 {
         let [min, max] = rectangle;
         let is_outside = min.cmplt(DVec2::splat(4.0)).any() || max.cmpgt(self.size - 4.0).any();
@@ -296,9 +299,9 @@ impl Canvas {
     }
 }
 
-/// Returns the possible places of a label of the size `size` near the point `at`. A place consists
-/// of the label's middle, its direction from the point, and a cost. The cost is least near the
-/// point in the direction `away`.
+/// Returns the possible places near the point `at` for a label of the size `size`. A place consists
+/// of the label's middle, the direction from the point to the label, and a cost. The cost is least
+/// close to the point in the direction `away`.
 fn places(at: DVec2, away: DVec2, size: DVec2) -> impl Iterator<Item = (DVec2, DVec2, f64)> {
     let gaps = [9.0, 18.0, 30.0, 46.0, 66.0].into_iter().enumerate();
     gaps.flat_map(move |(far, gap)| {
@@ -318,12 +321,12 @@ fn covers(rectangle: [DVec2; 2], polygon: &[DVec2]) -> bool {
     let [least, most] = sides.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], side| {
         [least.min(side), most.max(side)]
     });
-    // No edge crosses the rectangle, so it lies completely inside the polygon or completely
+    // If no edge crosses the rectangle, it lies completely inside the polygon or completely
     // outside. It is inside if its first corner lies on the same side of every edge.
     is_crossed || !polygon.is_empty() && (least >= 0.0 || most <= 0.0)
 }
 
-/// Directions from a point to its label. If several are equally good, the first one is used.
+/// Directions from a point to its label. Of equally good directions, the first one is used.
 const SIDES: [[f64; 2]; 8] = [
     [1.0, 0.0],
     [1.0, -0.6],
@@ -342,7 +345,8 @@ pub fn number(x: f64) -> String {
 
 /// Formats a length in SVG units with at most one decimal.
 pub fn length(x: f64) -> String {
-    // The limit avoids overflow. Nothing with such a large coordinate, or with NaN, is visible.
+    // Coordinates are limited to avoid overflow. Marks with such large coordinates, or with NaN,
+    // are invisible.
     let tenths = (x.clamp(-1e6, 1e6) * 10.0).round() as i64;
     let sign = if tenths < 0 { "-" } else { "" };
     match (tenths.abs() / 10, tenths.abs() % 10) {

@@ -1,5 +1,5 @@
-//! Draws the figure `methods`: a pixel's sample points by each sampling method, with the same
-//! number of samples.
+//! Draws the figure `methods`. It shows the sample points of each sampling method in a pixel, with
+//! the same number of samples for all methods.
 
 use glam::DVec2;
 
@@ -10,27 +10,27 @@ use crate::{
     scene::{Count, Method, Sampler, Scene},
 };
 
-/// Maximum number of samples per pixel in a figure. Figures with more are refused, since the dots
-/// would merge into a gray area.
+/// Maximum number of samples per pixel in a figure. With more samples, no figure is drawn, since
+/// the dots would merge into a gray area.
 const MOST: u64 = 1024;
 
-/// Maximum number of rows, and of columns, of a grid of cells ([`Tiling`]) whose lines are drawn.
-/// The lines of a finer grid would merge into a gray area.
+/// Maximum number of rows and maximum number of columns of a grid of cells ([`Tiling`]) that is
+/// drawn. The lines of a finer grid would merge into a gray area.
 const MOST_LINES: usize = 64;
 
 /// Side of the square that shows a pixel, in SVG units. Three of these squares fit beside each
 /// other.
 const SIDE: f64 = 196.0;
 
-/// Distances between the corners of neighbouring squares, in SVG units: to the right, and
-/// downwards. They leave space for the texts above each square.
+/// Distances between the corners of neighbouring squares, in SVG units: first horizontally, then
+/// vertically. They leave space for the texts above each square.
 const PITCH: DVec2 = DVec2::new(226.0, 262.0);
 
-/// Refuses more than [`MOST`] samples in a pixel, since a figure could not show them clearly.
+/// Rejects more than [`MOST`] samples in a pixel, since a figure could not show them clearly.
 ///
 /// # Errors
 ///
-/// Returns a sentence for the user.
+/// Returns a sentence for the user if there are too many samples.
 pub fn refuse_too_many(count: u64) -> Result<(), String> {
     if count <= MOST {
         Ok(())
@@ -89,8 +89,8 @@ pub fn draw(scene: &Scene, [x, y]: [u32; 2]) -> Result<String, String> {
     ))
 }
 
-/// Describes in words the cells of a pixel, for a method that places one of the `n` samples in each
-/// cell.
+/// Describes in words how a method divides a pixel into cells, each of which contains one of the
+/// `n` samples.
 fn kept(method: Method, n: u64) -> String {
     let tilings = tilings(method, n);
     if tilings.len() > 3 {
@@ -110,11 +110,11 @@ fn kept(method: Method, n: u64) -> String {
     }
 }
 
-/// Draws the cells of a pixel, for a method that places one of the `n` samples in each cell. The
-/// pixel is a square with the top left corner `corner` and the side `side`. A method may divide the
-/// pixel in several ways at once ([`Tiling`]s), for example into cells, rows and columns. If the
-/// first tiling is a grid, i.e. consists of neither whole rows nor whole columns, its lines are
-/// drawn stronger, so that the cells can be told from the rows and columns.
+/// Draws the cells into which a method divides a pixel, each of which contains one of the `n`
+/// samples. The pixel is drawn as a square with the top left corner `corner` and the side `side`. A
+/// method may divide the pixel in several ways at once ([`Tiling`]s), for example into cells, rows
+/// and columns. If the first tiling is a grid of cells instead of whole rows or columns, its lines
+/// are drawn stronger, so that cells are distinguished from rows and columns.
 pub fn strata(canvas: &mut Canvas, method: Method, n: u64, corner: DVec2, side: f64) {
     let at = |x: f64, y: f64| corner + DVec2::new(x, y) * side;
     let tilings = if n > 0 { tilings(method, n) } else { vec![] };
@@ -129,8 +129,8 @@ pub fn strata(canvas: &mut Canvas, method: Method, n: u64, corner: DVec2, side: 
     canvas.line("ink", &[&frame[..], &frame[..1]].concat());
 }
 
-/// Tints one stratum of each kind that the method uses: a cell, a column or a row. Returns the CSS
-/// class and the name of each tinted stratum.
+/// Tints one stratum of each kind into which the method divides a pixel: a cell, a column or a row.
+/// Returns the CSS class and the name of each tinted stratum.
 pub fn tint_strata(
     canvas: &mut Canvas,
     method: Method,
@@ -145,8 +145,8 @@ pub fn tint_strata(
             .rows
             .first()
             .map_or(0.0, |cells| *cells as f64 / n as f64);
-        // Column, row and cell are tinted at places apart from each other: at the right, at the
-        // bottom, and at the top left.
+        // To keep the tinted strata apart, the last column, the last row and the first cell are
+        // tinted.
         let (stratum, from, to) = match (tiling.is_columns(), tiling.is_rows()) {
             (true, _) => {
                 let stratum = ("blue", "a column");
@@ -161,8 +161,8 @@ pub fn tint_strata(
                 (("red", "a cell"), DVec2::ZERO, DVec2::new(width, height))
             }
         };
-        // If several tilings consist of cells, only a cell of the first one is tinted, since its
-        // cells are the most nearly square.
+        // If several tilings consist of cells, only a cell of the first tiling is tinted, since the
+        // cells of this tiling are most nearly square.
         if marked.contains(&stratum) {
             continue;
         }

@@ -1,11 +1,12 @@
 //! Draws figures of scenes for teaching material, as SVG files that are the same on every machine.
 //!
-//! A figure shows one idea with few marks, and each mark has its label beside it. The figures use
-//! results of other modules: samples come from [`sampling`](crate::sampling), visible objects from
-//! the tracer, outlines from the editor, and axes and angles from [`inspect`](crate::inspect).
+//! A figure shows one idea with few marks, and the label of each mark is beside the mark. The
+//! figures use results of other modules: samples come from [`sampling`](crate::sampling), visible
+//! objects from the tracer, outlines from the editor, and axes and angles from
+//! [`inspect`](crate::inspect).
 //!
-//! Each kind of figure has a file. `canvas` writes the SVG and places labels. `outside` shows the
-//! scene from a point beside its camera.
+//! Each kind of figure has a file. In addition, `canvas` writes the SVG and places labels, and
+//! `outside` shows a scene from a point beside its camera.
 
 mod camera;
 mod canvas;
@@ -28,7 +29,7 @@ pub enum Kind {
     Camera,
     /// A pixel with its samples and colours.
     Pixel,
-    /// A triangle with its sides, centroid, normal and spin.
+    /// A triangle with its sides, centroid, normal and spin, i.e. its rotation in its plane.
     Triangle,
     /// The edge of the picture before and after the camera's roll.
     Roll,
@@ -48,10 +49,11 @@ pub const KINDS: [(&str, Kind); 5] = [
 /// The pixel and the triangle that a figure shows. A field that is `None` is chosen automatically.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Choice<'a> {
-    /// Column and row of the pixel, for the figures `camera`, `pixel` and `methods`. `None` lets
-    /// the figure choose a pixel that suits it; `methods` chooses the pixel (0, 0).
+    /// Column and row of the pixel, for the figures `camera`, `pixel` and `methods`. If it is
+    /// `None`, the figure chooses a suitable pixel. The figure `methods` chooses the pixel (0, 0).
     pub pixel: Option<[u32; 2]>,
-    /// Name of the triangle, for the figure `triangle`. `None` chooses the scene's first triangle.
+    /// Name of the triangle, for the figure `triangle`. If it is `None`, the scene's first triangle
+    /// is drawn.
     pub object: Option<&'a str>,
 }
 
@@ -59,12 +61,12 @@ pub struct Choice<'a> {
 ///
 /// # Errors
 ///
-/// Returns a sentence for the user that says why the scene has no such figure.
+/// Returns a sentence for the user that says why this figure cannot be drawn.
 ///
 /// # Panics
 ///
-/// The scene breaks a condition of the language. This is possible only for a scene that was made in
-/// code; [`Scene::check`] detects it.
+/// Panics if the scene breaks a condition of the language. Only a scene that was made in code can
+/// do so. [`Scene::check`] finds such scenes.
 pub fn figure(scene: &Scene, kind: Kind, choice: Choice<'_>) -> Result<String, String> {
     let Image { width, height, .. } = scene.image;
     match (choice.pixel, kind, choice.object) {
@@ -92,7 +94,8 @@ pub fn figure(scene: &Scene, kind: Kind, choice: Choice<'_>) -> Result<String, S
     }
 }
 
-/// Returns the triangle named `wanted` or, without a name, the first triangle of the scene.
+/// Returns the triangle with the name `wanted`, or the scene's first triangle if `wanted` is
+/// `None`.
 fn triangle_of<'s>(scene: &'s Scene, wanted: Option<&str>) -> Result<&'s Triangle, String> {
     let objects = scene.objects.iter();
     let triangles = objects.filter_map(|object| match &object.shape {

@@ -1,7 +1,7 @@
-//! Shows a scene from outside, i.e. not from its camera.
+//! Shows a scene from outside, i.e. from an observer beside its camera.
 //!
-//! The view maps given points in space into a rectangle of the drawing, which they fill as far as
-//! possible. The observer is a camera as in the scene language, so that [`Projection`] and the
+//! The view maps given points in space to a rectangle of the drawing, which they fill as far as
+//! possible. The observer is a [`Camera`] of the scene language, so that [`Projection`] and the
 //! editor's outlines can be used.
 
 use std::sync::Arc;
@@ -19,13 +19,12 @@ use crate::{
 };
 
 /// Distance of the observer from the middle of the shown points, as a multiple of the radius of a
-/// sphere around them. From farther away, parallel lines look more parallel, and the view shows
-/// less depth. The value was chosen by eye.
+/// sphere around them. With a larger distance, the view shows less depth. With a smaller one, it is
+/// more distorted by perspective. Chosen by eye.
 const DISTANCE: f64 = 6.0;
 
 /// Maximum absolute value of the coordinates that determine the view, in metres. Larger coordinates
-/// are limited to it. Sums and squares of coordinates then do not overflow, since an `f64` reaches
-/// 1.8e308.
+/// are clamped, so that sums and squares of coordinates do not overflow. An `f64` reaches 1.8e308.
 const MOST: f64 = 1e100;
 
 /// A view of a scene from outside, in a rectangle of the drawing.
@@ -43,7 +42,7 @@ impl Outside {
     /// towards the observer, and `up` points upwards in the drawing.
     pub fn new(points: &[DVec3], [side, up]: [DVec3; 2], panel: [DVec2; 2]) -> Self {
         let (min, max) = bounds3(points);
-        // Sums of very large coordinates could overflow, so the coordinates are limited.
+        // Coordinates are clamped, because sums of very large ones could overflow.
         let within = |v: DVec3| v.clamp(DVec3::splat(-MOST), DVec3::splat(MOST));
         let (min, max) = (within(min), within(max));
         let radius = ((max - min).length() / 2.0).max(1.0 / MOST);
@@ -84,7 +83,8 @@ impl Outside {
         self.projection.projected(point) * self.scale + self.offset
     }
 
-    /// Draws the line through `points` in space. It is cut off at the edge of the rectangle.
+    /// Draws the line through `points` in space. The line is cut off at the edge of the rectangle
+    /// `panel`.
     pub fn line(&self, canvas: &mut Canvas, class: &str, points: &[DVec3]) {
         for line in self.projection.line(points) {
             let line: Vec<DVec2> = line
@@ -124,8 +124,8 @@ impl Outside {
     }
 }
 
-/// Returns drawings for the picture of the scene's camera, with the outlines of the objects that
-/// are at least partly visible.
+/// Returns the [`Overlays`] of the picture that the scene's camera sees, with the outlines of the
+/// objects that are at least partly visible.
 pub fn visible_overlays(scene: &Scene) -> Overlays {
     let (seen, _) = seen(scene);
     let is_seen = |(index, seen)| matches!(seen, Visibility::Part(..)).then_some(index);
@@ -133,9 +133,9 @@ pub fn visible_overlays(scene: &Scene) -> Overlays {
     overlays(scene, &ShownObjects::Only(indices))
 }
 
-/// Draws the outlines of the objects in a picture, filled with their colours. The function `place`
-/// maps a point of the picture to the drawing. Checkerboards are left out, since the outlines show
-/// only one of their squares.
+/// Draws the outlines in `overlays`, filled with the colours of their objects. The function `place`
+/// maps a point of the picture to the drawing. Checkerboards are left out, since the outline of a
+/// checkerboard shows only one of its squares.
 pub fn draw_objects(
     canvas: &mut Canvas,
     scene: &Scene,
@@ -161,8 +161,9 @@ pub fn draw_objects(
     }
 }
 
-/// Removes each point of a line that is less than one SVG unit away from the one before it, except
-/// the last point. Such points are not visible, and many small spheres would make a large file.
+/// Removes each point of a line that is less than one SVG unit away from the kept point before it.
+/// The last point is always kept. This keeps the file small if there are many small spheres, and
+/// the removed points would not be visible.
 fn thinned(mut line: Vec<DVec2>) -> Vec<DVec2> {
     let end = line.last().copied();
     line.dedup_by(|next, kept| next.distance_squared(*kept) < 1.0);
@@ -186,8 +187,8 @@ pub fn draw_within(canvas: &mut Canvas, class: &str, line: &[DVec2], panel: [DVe
     canvas.line(class, &part);
 }
 
-/// Returns the scale and the offset by which points fill the rectangle `panel` as far as possible
-/// and are centred in it.
+/// Returns the scale and the offset that map `points` to the rectangle `panel`. The mapped points
+/// fill the rectangle as far as possible, and are centred in it.
 pub fn fit(points: &[DVec2], panel: [DVec2; 2]) -> (f64, DVec2) {
     let least = points.iter().copied().fold(DVec2::INFINITY, DVec2::min);
     let greatest = points.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);

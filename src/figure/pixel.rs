@@ -1,5 +1,5 @@
-//! Draws the figure `pixel`: one pixel with its sample points, the cells of the sampling method,
-//! and the colours that the samples see.
+//! Draws the figure `pixel`. It shows one pixel with its sample points, the cells of the sampling
+//! method, and the colours that the samples see.
 
 use glam::DVec2;
 
@@ -21,17 +21,17 @@ const CORNER: DVec2 = DVec2::new(16.0, 16.0);
 /// figure's width, 680; the rest is for the list of colours.
 const SIDE: f64 = 360.0;
 
-/// Number of rows, and of columns, of points at which the pixel's colours are determined. Each
-/// point is drawn as a small square. The number must divide [`SIDE`], so that rounding lengths to
-/// one decimal leaves no gaps between the squares; 120 gives squares of 3 units.
+/// Number of rows of points at which the pixel's colours are determined, and also the number of
+/// columns. Each point is drawn as a small square. The number must divide [`SIDE`], so that
+/// rounding lengths to one decimal leaves no gaps between the squares. With 120, the squares have
+/// sides of 3 units.
 const ROWS: u32 = 120;
 
-/// Maximum number of colours that are listed beside the pixel. If there are more, those with the
-/// largest areas are listed. The list has no space for many more, and most pixels show fewer
-/// colours.
+/// Maximum number of colours that are listed beside the pixel. If the pixel shows more, those with
+/// the largest areas are listed. The figure has no space for many more, and most pixels show fewer.
 const COLORS: usize = 4;
 
-/// Draws the figure of `pixel` or, if it is `None`, of a pixel with several colours.
+/// Draws the figure of the pixel `pixel`. If it is `None`, chooses a pixel with several colours.
 pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
     let world = World::new(scene);
     let [x, y] = pixel.unwrap_or_else(|| most_colors(scene, &world));
@@ -191,7 +191,8 @@ fn regions(canvas: &mut Canvas, world: &World, [x, y]: [u32; 2]) {
     }
 }
 
-/// Returns the name of an object, or "background". A longer name is cut to 12 characters.
+/// Returns the name of an object, or "background" for `None`. Names of more than 12 characters are
+/// cut.
 fn name(scene: &Scene, object: Option<usize>) -> String {
     let Some(object) = object.map(|index| &scene.objects[index]) else {
         return "background".to_owned();
@@ -203,9 +204,9 @@ fn name(scene: &Scene, object: Option<usize>) -> String {
     }
 }
 
-/// Returns a pixel that suits the figure: the one with the highest score by [`evenness`]. At most
-/// 90 rows of the picture are searched, and only pixels at which the colour changes along the row
-/// are tried. If there is none, returns the pixel in the middle of the picture.
+/// Returns a pixel that suits the figure: the one with the highest score ([`evenness`]). Searches
+/// at most 90 rows of the picture, and tries only pixels at which the colour changes along the row.
+/// If there are none, returns the pixel in the middle of the picture.
 fn most_colors(scene: &Scene, world: &World) -> [u32; 2] {
     let (width, height) = (scene.image.width, scene.image.height);
     let (columns, rows) = (width.min(64), height.min(90));
@@ -235,10 +236,10 @@ fn most_colors(scene: &Scene, world: &World) -> [u32; 2] {
     best.1
 }
 
-/// Returns how well a pixel suits the figure, from its colours at 8 × 8 points. The score is higher
-/// for more colours, up to three, and for more equal areas of the colours (a low Simpson index). It
-/// is lower for many changes of colour from point to point, which are typical near the horizon of a
-/// checkerboard.
+/// Returns a score that says how well a pixel suits the figure, from its colours at 8 × 8 points.
+/// The score is higher if the pixel shows more colours, up to three, and if their areas are more
+/// equal (a low Simpson index). It is lower if the colour changes often from point to point, as
+/// near the horizon of a checkerboard.
 fn evenness(world: &World, [x, y]: [u32; 2]) -> f64 {
     let at = |i: u32| (f64::from(i) + 0.5) / 8.0 - 0.5;
     let slot = |cell: u32| world.slot_at(x, y, DVec2::new(at(cell % 8), at(cell / 8)));

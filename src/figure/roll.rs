@@ -1,4 +1,4 @@
-//! Draws the figure `roll`: the edge of the picture before and after the camera's roll.
+//! Draws the figure `roll`. It shows the edge of the picture before and after the camera's roll.
 
 use glam::DVec2;
 
@@ -13,11 +13,11 @@ use crate::{
 };
 
 /// Height of the figure, in SVG units, before empty space is cropped. The figure's width is 680.
-/// The pictures are scaled to fit; in a lower figure, they would be smaller.
+/// The pictures are scaled to fit, so they would be smaller in a lower figure.
 const HEIGHT: f64 = 400.0;
 
-/// Number of straight segments by which the arc of the roll's angle is drawn. With 24, it looks
-/// round.
+/// Number of straight segments by which the arc of the roll's angle is drawn. With 24 segments, the
+/// arc looks round.
 const ARC: u32 = 24;
 
 /// Draws the figure for the roll of the scene's camera, and returns it as SVG.
@@ -42,8 +42,8 @@ pub fn draw(scene: &Scene) -> String {
     )
 }
 
-/// Draws, over the picture of the camera without roll, the edge of this picture and the edge of the
-/// rolled picture.
+/// Draws the picture of the camera without roll. Over it, draws the edges of this picture and of
+/// the rolled picture.
 fn before_and_after(canvas: &mut Canvas, scene: &Scene) {
     let rolled = |roll: Angle| {
         let camera = Camera {
@@ -54,8 +54,8 @@ fn before_and_after(canvas: &mut Canvas, scene: &Scene) {
     };
     let (level_camera, level) = rolled(Angle::default());
     let roll = scene.camera.roll;
-    // Maps a point of the picture with the given roll to the point of the picture without roll that
-    // shows the same direction.
+    // Maps a point of the picture with the roll `roll` to the point of the picture without roll
+    // that lies in the same direction from the eye.
     let seen = |roll: Angle, point: DVec2| {
         let (_, view) = rolled(roll);
         level.projected(view.at_depth(point, 1.0))
@@ -119,7 +119,7 @@ fn before_and_after(canvas: &mut Canvas, scene: &Scene) {
     canvas.label("blue", [lowest(&after), eye], "after");
 }
 
-/// Draws the rolled picture upright, as a user sees it.
+/// Draws the rolled picture with a level frame, as a viewer sees it.
 fn picture(canvas: &mut Canvas, scene: &Scene) {
     let found = visible_overlays(scene);
     let size = DVec2::from(found.size.map(f64::from));

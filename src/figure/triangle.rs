@@ -1,5 +1,5 @@
-//! Draws the figure `triangle`: a triangle with its sides, centroid, normal, and spin (rotation in
-//! its plane).
+//! Draws the figure `triangle`. It shows a triangle with its sides, centroid, normal, and spin,
+//! i.e. its rotation in its plane.
 
 use glam::{DVec2, DVec3};
 
@@ -15,10 +15,11 @@ use crate::{
 };
 
 /// Height of the figure, in SVG units, before empty space is cropped. The figure's width is 680.
-/// The triangle is scaled to fit; in a lower figure, it would be smaller.
+/// The triangle is scaled to fit, so it would be smaller in a lower figure.
 const HEIGHT: f64 = 430.0;
 
-/// Number of straight segments by which the arc of the spin is drawn. With 24, it looks round.
+/// Number of straight segments by which the arc of the spin is drawn. With 24 segments, the arc
+/// looks round.
 const ARC: u32 = 24;
 
 /// Draws the figure of a triangle, and returns it as SVG.
@@ -69,8 +70,8 @@ pub fn draw(triangle: &Triangle) -> String {
     if is_spun {
         let [a, b, c] = unspun;
         outside.line(&mut canvas, "faint dash", &[a, b, c, a]);
-        // The arc is the path of one point while the triangle is rotated. This point is the
-        // midpoint between the centroid and the right end of the base.
+        // The arc is the path of one point while the triangle is rotated: the midpoint between the
+        // centroid and the right end of the base.
         let on_way = |i: u32| {
             let [_, right, _] = spun(spin * (f64::from(i) / f64::from(ARC)));
             outside.at(centroid.midpoint(right))

@@ -1,12 +1,12 @@
 //! Times renders, and compares them with the exact picture.
 //!
 //! The exact picture is rendered first, since all errors are differences from it. This render is
-//! not timed, but warms up the caches and the processor for the timed renders. Then the renders are
-//! timed in several rounds. In each round, every method renders once with every number of samples.
-//! If the user does not choose these numbers, they are 1, 4, 16 and 64. Higher powers of 4 follow
-//! as long as two conditions hold: there is time for a few rounds with the next number, and the
-//! error of some method is still above the smallest requested error. In later rounds, the renders
-//! are in shuffled order, so that other load on the machine affects all methods alike.
+//! not timed, but warms up the caches and the processor. Then the methods are timed in several
+//! rounds. In each round, every method renders once with every number of samples. If the user does
+//! not choose these numbers, they are 1, 4, 16 and 64. Higher powers of 4 follow as long as two
+//! conditions hold: there is time for a few rounds with the next number, and the error of some
+//! method is still above the smallest requested error. After the first round, the order of the
+//! renders is shuffled, so that other load on the machine affects all methods alike.
 //!
 //! A timed render starts with the scene in memory and ends with the picture in memory. It includes
 //! preparing the objects and the samples, and starting the threads. Reading the scene, comparing
@@ -33,30 +33,30 @@ use crate::{
 };
 
 /// Minimum and maximum length of the series 1, 4, 16, … of samples per pixel, if the user does not
-/// choose the numbers. Slopes are fitted to the last three numbers. With fewer than four, they
-/// would include one sample per pixel, whose error is untypical. The maximum allows up to 4^9
-/// samples per pixel, but the time limit usually ends the series earlier.
+/// choose the numbers. Slopes are fitted to the last three numbers, so four numbers are needed to
+/// exclude one sample per pixel, whose error is untypical. The maximum allows up to 4^9 samples per
+/// pixel, but the time limit usually ends the series earlier.
 const RUNGS: (usize, usize) = (4, 10);
 
-/// Usual and maximum number of runs of each render, if the user does not choose the number. The
-/// series of samples is continued only if there is time for the usual number of runs. With three
+/// Usual and maximum number of runs of each render, if the user does not choose the number. More
+/// samples are added to the series only if there is time for the usual number of runs. With three
 /// runs, the median ignores a run that other load on the machine delayed. With more than nine, the
 /// report would take longer for hardly better medians.
 const RUNS: (u64, u64) = (3, 9);
 
-/// Number of samples per pixel with which the slowest method renders its picture for the comparison
-/// on the page. The other methods get the same CPU time. With 16, noise is still visible, and so
-/// are the differences between the methods.
+/// Approximate number of samples per pixel with which the slowest method renders its picture for
+/// the comparison on the page. The other methods get the same CPU time. With 16, noise is still
+/// visible, and so are the differences between the methods.
 const SHOWN: u64 = 16;
 
-/// Makes the measurement that the request describes. Calls `progress` after each timed render with
+/// Makes the measurement that the request describes. After each timed render, calls `progress` with
 /// the fraction of the work that is done. The progress callback in `control` is not called. If the
 /// user cancels the measurement, returns the results so far, marked as interrupted.
 ///
 /// # Errors
 ///
-/// The user cancels before the exact picture is done, there is not enough memory, or no thread can
-/// be started.
+/// Fails if the user cancels before the exact picture is done, if there is not enough memory, or if
+/// no thread can be started.
 pub fn measure(
     subject: &MeasuredScene,
     scene: &Scene,
@@ -144,8 +144,8 @@ impl Benchmark<'_> {
             if self.request.runs.is_none() && !has_time {
                 break;
             }
-            // The random order depends only on the number of the round, so it is the same in every
-            // measurement.
+            // The random order depends only on the number of the round. So it is the same in every
+            // measurement with these tasks.
             tasks.shuffle(&mut Key::new(round, 0).rng());
             for &task in &tasks {
                 self.render(task, round)?;
@@ -154,8 +154,8 @@ impl Benchmark<'_> {
         self.pictures()
     }
 
-    /// Makes the first round: renders once with the exact method, and once by every sampling method
-    /// with every number of samples. If the user chose no numbers, they are 1, 4, 16, …, as long as
+    /// Makes the first round: renders once by the exact method, and once by every sampling method
+    /// with every number of samples. If the user chose no numbers, uses 1, 4, 16, …, as long as
     /// there is time.
     fn first_round(&mut self) -> Result<(), RenderError> {
         self.render(None, 0)?;
@@ -177,8 +177,8 @@ impl Benchmark<'_> {
             }
             let last = started.elapsed();
             // A render is assumed to take a constant time plus a time proportional to the number of
-            // samples. Since each number is four times the one before, the increase of the time
-            // from number to number is also four times the increase before it.
+            // samples. Each number is four times the one before. So the time increases by four
+            // times its last increase.
             let next = last + 4 * last.saturating_sub(before);
             if is_open && !self.goes_on(next) {
                 break;
@@ -188,10 +188,10 @@ impl Benchmark<'_> {
         Ok(())
     }
 
-    /// Returns whether to continue with four times as many samples. `next` is the estimated time of
-    /// all methods together with this number. The minimum length of the series in [`RUNGS`] is
-    /// always measured. After that, the series continues only if there is time for all runs, and if
-    /// a method's error is still above the smallest requested error.
+    /// Returns whether to continue with four times as many samples. `next` is the estimated time
+    /// for one render by each method with this number. The minimum length of the series in
+    /// [`RUNGS`] is always measured. Then, the series continues only if there is time for all runs,
+    /// and if a method's error is still above the smallest requested error.
     fn goes_on(&self, next: Duration) -> bool {
         let least = self.request.errors.iter().copied().fold(1.0, f64::min);
         let error = |series: &MethodSeries| Some(series.points.last()?.typical().error);
@@ -206,8 +206,8 @@ impl Benchmark<'_> {
         let measured = &mut self.measured;
         if let Some((series, point)) = task {
             let per_pixel = measured.rungs[point];
-            // Each run with each number of samples has its own seed, so that their errors are
-            // independent.
+            // Each run has its own seed, which also depends on the number of samples. So the errors
+            // of different runs are independent.
             let seed = Key::new(measured.seed, per_pixel).bits(round) >> 11;
             let series = &mut measured.series[series];
             let samples = [per_pixel, seed];
@@ -228,9 +228,9 @@ impl Benchmark<'_> {
         Ok(())
     }
 
-    /// Renders the pictures by which the page compares the sampling methods. All take about the
-    /// same CPU time: the time of the slowest method with about [`SHOWN`] samples per pixel. Only
-    /// one small area is stored, the same for all pictures.
+    /// Renders the pictures by which the page compares the sampling methods. All renders take about
+    /// the same CPU time: the time of the slowest method with about [`SHOWN`] samples per pixel. Of
+    /// each picture, only a small area is stored, which is the same for all methods.
     fn pictures(&mut self) -> Result<(), RenderError> {
         let measured = &mut self.measured;
         let Some(last) = measured.rungs.len().checked_sub(1) else {
@@ -263,8 +263,8 @@ impl Benchmark<'_> {
         Ok(())
     }
 
-    /// Reports the progress. It is the fraction of the samples that are done or, if their number is
-    /// not known beforehand, the fraction of the time that has passed.
+    /// Reports the progress as the fraction of the samples that are done. If the total number of
+    /// samples is not known beforehand, reports the fraction of the time budget that has passed.
     fn report_progress(&self) {
         let measured = &self.measured;
         let share = match self.request.runs {
@@ -304,19 +304,19 @@ fn rendered(
     render_as_asked(&world, &sampling, world.picture(), control)
 }
 
-/// Maximum width and height, in pixels, of the area by which the page compares the methods. Several
-/// areas, magnified, must fit beside each other on the page; a smaller area would show fewer edges.
+/// Maximum width and height, in pixels, of the area in which the page compares the methods. Several
+/// magnified areas must fit beside each other on the page. A smaller area would show fewer edges.
 const PART: (u32, u32) = (48, 27);
 
-/// Minimum fraction of an area's pixels that do not show the area's most frequent object (or the
-/// background, if that is more frequent). If the fraction is smaller, the area is treated as having
-/// no edge, and another area is preferred for comparing the methods. With a quarter, an edge runs
-/// through the middle of the area rather than through a corner.
+/// Minimum fraction of an area's pixels that must show something else than the area's most frequent
+/// object (or the background, if this is more frequent). If the fraction is smaller, the area is
+/// treated as having no edge, and other areas are preferred for comparing the methods. With a
+/// quarter, an edge runs near the middle of the area rather than through a corner.
 const OTHER_OBJECT: f64 = 0.25;
 
-/// Returns the area in which the page compares the methods. Areas without background that show an
-/// edge between objects are preferred, and then other areas with an edge. Among equally preferred
-/// areas, the one with the greatest error is returned. Neighbouring areas overlap by half.
+/// Returns the area in which the page compares the methods. Prefers areas that show an edge between
+/// objects and no background, and then other areas with an edge. Among equally preferred areas,
+/// returns the one with the greatest error. Neighbouring areas overlap by half.
 fn worst_part(world: &World, film: &Film, exact: &Film) -> Result<Area, TooLarge> {
     let whole = world.picture();
     let (width, height) = (whole.width.min(PART.0), whole.height.min(PART.1));
@@ -348,9 +348,9 @@ fn worst_part(world: &World, film: &Film, exact: &Film) -> Result<Area, TooLarge
     Ok(worst)
 }
 
-/// Does `work` and measures its times. The CPU time is that of the whole process, which does
-/// nothing else meanwhile except show a progress bar. The error in the returned run is NaN, since
-/// the picture is compared only later.
+/// Calls `work` and measures its times. The CPU time is that of the whole process, which does
+/// nothing else at the same time except show a progress bar. The error in the returned run is NaN,
+/// since the picture is compared with the exact one later.
 fn timed<T>(work: impl FnOnce() -> Result<T, RenderError>) -> Result<(T, Run), RenderError> {
     let (cpu, wall) = (ProcessTime::try_now().ok(), Instant::now());
     let done = work()?;

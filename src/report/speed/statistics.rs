@@ -1,7 +1,7 @@
 //! Statistics: median, root mean square, slope of a fitted line, and standard error of a mean.
 
-/// Returns the median of `values`, which need not be sorted. For an even number of values, it is
-/// the mean of the middle two. If there are no values, it is NaN.
+/// Returns the median of `values`, which need not be sorted. For an even number of values, this is
+/// the mean of the middle two. Returns NaN if there are no values.
 pub fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -39,7 +39,7 @@ pub fn slope(points: &[(f64, f64)]) -> Option<f64> {
 
 /// Returns the standard error of the mean of the n numbers in `values`. It is s/√n, where s is
 /// their standard deviation with the divisor n − 1. Returns `None` for fewer than three numbers,
-/// because they say too little about their spread.
+/// because their standard deviation is too uncertain.
 pub fn standard_error(values: &[f64]) -> Option<f64> {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;

@@ -1,4 +1,4 @@
-//! Sentences and a table about a measurement, for a terminal and for an HTML page.
+//! Writes sentences and a table about a measurement, for a terminal and for an HTML page.
 
 use super::{
     estimate::{Estimate, Ranking},
@@ -9,18 +9,19 @@ use crate::{diagnostic::visible_line, numbers, scene::Method, suggest};
 
 /// A table with a row for each method.
 pub struct SummaryTable {
-    /// Column headings. At a line feed, a heading may be broken if the column is narrow.
+    /// Column headings. A heading may contain a line feed, at which it is broken if the column is
+    /// narrow.
     pub heads: Vec<String>,
     /// Rows of cells. The first cell is the method's name.
     pub rows: Vec<Vec<String>>,
 }
 
-/// CPU time, in seconds, below which methods are not compared by time. With every method, starting
-/// the threads and preparing the scene need some milliseconds. This time also varies by some
-/// milliseconds, so it would hide the differences between the methods.
+/// CPU time, in seconds, below which methods are not compared by time. Starting the threads and
+/// preparing the scene takes some milliseconds with every method. This time varies so much that it
+/// would hide the differences between the methods.
 const TOO_QUICK: f64 = 0.01;
 
-/// Returns a line with the picture's size, the number of runs, the threads and the machine.
+/// Returns a line with the picture's size, the numbers of runs and of threads, and the machine.
 pub fn heading(measured: &Measurement) -> String {
     let whole = measured.whole();
     let machine = &measured.machine;
@@ -35,16 +36,16 @@ pub fn heading(measured: &Measurement) -> String {
     )
 }
 
-/// Returns a sentence for each error in `measured.errors`. It recommends a method for reducing the
-/// error to this value.
+/// Returns a recommendation for each error in `measured.errors`: a sentence that recommends a
+/// method for reducing the error to this value.
 pub fn verdicts(measured: &Measurement) -> Vec<String> {
     let verdict = |&error: &f64| verdict(measured, error);
     measured.errors.iter().map(verdict).collect()
 }
 
 /// Returns a sentence that recommends a method for reducing the error to `error`, with the reason
-/// and other methods for comparison. Methods are compared by CPU time or, if that is below 10 ms,
-/// by samples.
+/// and other methods for comparison. Methods are compared by CPU time or, if some CPU time is below
+/// 10 ms, by samples.
 pub fn verdict(measured: &Measurement, error: f64) -> String {
     let Ranking { fastest, others } = measured.ranking(error);
     let wanted = asked_error(error);
@@ -102,7 +103,7 @@ pub fn verdict(measured: &Measurement, error: f64) -> String {
 }
 
 /// Returns the end of a sentence that recommends the methods with the fewest samples for `error`.
-/// Extrapolated estimates are ignored. Returns `None` if every remaining estimate is at least
+/// Extrapolated estimates are ignored. Returns `None` if all other estimated CPU times are at least
 /// [`TOO_QUICK`], because the methods can then be compared by time.
 fn by_samples(measured: &Measurement, error: f64) -> Option<String> {
     let estimates = measured.series.iter().filter_map(|series| {
@@ -162,10 +163,10 @@ fn per_pixel(estimate: &Estimate) -> String {
     format!("{} {noun} per pixel", samples(estimate))
 }
 
-/// Returns the table of methods. A method's row contains the slope of the logarithm of the error
-/// over the logarithm of the number of samples, and two factors that follow from the slope. For
-/// each of `errors`, it also contains the samples, the CPU time and the elapsed time that the
-/// method needs.
+/// Returns the table of methods, with a row for each method. A row contains the slope of the
+/// logarithm of the error over the logarithm of the number of samples, and two factors that follow
+/// from the slope. It also contains the samples, the CPU time and the elapsed time that the method
+/// needs for each of `errors`.
 pub fn table(measured: &Measurement, errors: &[f64]) -> SummaryTable {
     let mut heads = vec!["method".to_owned()];
     heads.extend(
@@ -201,9 +202,9 @@ pub fn table(measured: &Measurement, errors: &[f64]) -> SummaryTable {
     SummaryTable { heads, rows }
 }
 
-/// Returns the three cells about a slope: the slope itself; the factor by which the error falls
-/// with four times as many samples; and the factor by which the number of samples must grow for a
-/// tenth of the error.
+/// Returns the three cells about a slope. They contain the slope itself, the factor by which four
+/// times as many samples divide the error, and the factor by which the number of samples must grow
+/// to reduce the error to a tenth.
 fn slopes(found: Option<EndSlope>) -> [String; 3] {
     let divisor = factor(found.and_then(|it| it.divisor()));
     let cost = found.and_then(|it| it.cost_of_a_tenth());
@@ -232,7 +233,8 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
 }
 
 /// Makes a text from outside, such as a file's name, safe to print and to put into XML. Control
-/// characters are made visible, and the two other characters that XML forbids are replaced.
+/// characters are made visible. The two other characters that XML forbids, U+FFFE and U+FFFF, are
+/// replaced.
 pub fn printable(text: &str) -> String {
     visible_line(text).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
 }
