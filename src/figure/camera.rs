@@ -32,8 +32,8 @@ const FARTHEST: f64 = 15.0;
 /// be confusing.
 const MOST_OBJECTS: usize = 60;
 
-/// Width and height, in SVG units, below which a window is too small to be recognised. The figure
-/// of such a window says so in words.
+/// Width and height, in SVG units, below which a window is too small to be recognised. In the
+/// figure of such a window, the label says that the window is too small.
 const TINY: f64 = 16.0;
 
 /// Approximate maximum number of lines between a checkerboard's squares, in each direction. If

@@ -74,7 +74,7 @@ pub struct Canvas {
 struct Label {
     class: &'static str,
     /// Points beside which the label may be placed, each with the preferred direction from the
-    /// point to the label. The label is placed beside the point where its cost is least.
+    /// point to the label. Of all possible positions, the one with the least cost is used.
     points: Vec<[DVec2; 2]>,
     text: String,
 }

@@ -17,8 +17,8 @@ use crate::{
 /// of the figure.
 const CORNER: DVec2 = DVec2::new(16.0, 16.0);
 
-/// Side of the square that shows the pixel, in SVG units. The square occupies about half of the
-/// figure's width, 680; the rest is for the list of colours.
+/// Side of the square that shows the pixel, in SVG units. The square takes about half of the
+/// figure's width, 680. The rest is for the list of colours.
 const SIDE: f64 = 360.0;
 
 /// Number of rows of points at which the pixel's colours are determined, and also the number of

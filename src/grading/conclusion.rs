@@ -181,8 +181,8 @@ fn attributed(judge: &Judge, last: &Candidate, is_explained: bool) -> Vec<NamedM
     mistakes
 }
 
-/// Returns the verdict for a hypothesis with mistakes. The mistakes are named if together they
-/// explain the picture and are plausible; otherwise they are reported as guesses.
+/// Returns the verdict for a hypothesis with mistakes. If the mistakes together explain the picture
+/// and are plausible, they are named. Otherwise, they are reported as guesses.
 fn with_mistakes(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     let (scene, last) = (judge.scene, found.candidate());
     let mut mistakes = attributed(judge, last, is_explained);
@@ -236,7 +236,8 @@ fn is_slight(scene: &Scene, candidate: &Candidate, named: &[NamedMistake]) -> bo
         let mut named = named.iter();
         named.any(|one| (one.id, one.object) == (mistake.id(), mistake.object()))
     };
-    // A wrong near or far plane displaces nothing, but it cuts objects off, so it is never slight.
+    // A wrong near or far plane displaces nothing, but cuts objects off. So it is never treated as
+    // slight.
     let is_place = |mistake: &Mistake| match mistake {
         Mistake::Numbers(parameter, _) => {
             !parameter.is_color() && !matches!(parameter.fields[..], ["near" | "far"])

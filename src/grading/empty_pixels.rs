@@ -13,9 +13,9 @@ use super::{
 };
 use crate::film::Film;
 
-/// Replaces pixels without a sample by NaN. `moments` describes the exact picture, and `empty` is
-/// the colour that a program writes into a pixel without a sample. Returns `None` if no pixel seems
-/// to lack a sample.
+/// Replaces pixels that seem to lack a sample by NaN. `moments` describes the exact picture, and
+/// `empty` is the colour that the program writes into pixels without a sample. Returns `None` if no
+/// pixel is replaced.
 ///
 /// A pixel is suspected if it has the colour `empty` and the exact picture has another colour
 /// there. No pixel is replaced in two cases. In the first case, suspected pixels are neighbours

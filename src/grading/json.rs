@@ -5,9 +5,9 @@ use serde_json::{Map, Value, json};
 use super::verdict::{NamedMistake, Verdict};
 use crate::film::{CHANNELS, Comparison};
 
-/// Returns the JSON fields for a comparison of two pictures, and for a verdict on the first picture
-/// if there is one. `found` is the comparison, or `None` if the pictures have different sizes.
-/// `tolerance` is in steps of 8-bit sRGB.
+/// Returns the JSON fields for a comparison of two pictures with the sizes `sizes`. If a verdict on
+/// the first picture is given, adds its fields. `found` is the comparison, or `None` if the sizes
+/// differ. `tolerance` is in steps of 8-bit sRGB.
 #[doc(hidden)]
 pub fn figures(
     sizes: [[u32; 2]; 2],

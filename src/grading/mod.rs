@@ -1,8 +1,9 @@
 //! Finds out what is wrong with a picture of a scene.
 //!
-//! In: a scene, its exact picture, and a picture that somebody else's program made. Out: a verdict,
-//! and how far each object is displaced. The verdict is: right, right except for sampling noise,
-//! wrong by mistakes that are named, or wrong for an unknown reason.
+//! In: a scene, its exact picture, and a picture that somebody else's program made. Out: a verdict
+//! on the picture, and how far each object is displaced. The verdict says that the picture is
+//! right, right except for sampling noise, wrong by mistakes that are named, or wrong for an
+//! unknown reason.
 //!
 //! A hypothesis (`hypotheses`) is a program with mistakes. Its score (`scoring`) says how well the
 //! picture that it would render explains the given one. The search (`search`) looks for the

@@ -40,7 +40,8 @@ impl Kind {
 pub struct NamedMistake {
     /// Stable identifier, for programs.
     pub id: &'static str,
-    /// Index of the object that the mistake is about. `None` if it is about no single object.
+    /// Index of the object that the mistake is about. `None` if the mistake is not about a single
+    /// object.
     pub object: Option<usize>,
     /// Message that says what is wrong.
     pub message: String,

@@ -170,7 +170,7 @@ pub fn exchange_sides(c: &mut Candidate) {
 }
 
 /// Multiplies the distance of the view plane from the eye by `by`. If the scene gives a field of
-/// view instead of the distance, changes the angle so that the picture is the same.
+/// view instead of the distance, changes this angle so that the effect is the same.
 pub fn lengthen(c: &mut Candidate, by: f64) {
     match &mut c.scene.camera.lens {
         Lens::Distance(d) => *d *= by,
@@ -202,7 +202,7 @@ pub fn divide_by_sine_of_up(c: &mut Candidate) {
 }
 
 /// Multiplies the distance of the view plane from the eye by `by`. If the scene gives a field of
-/// view instead, divides its angle by `by`, unless the result would be 180° or more.
+/// view instead, divides this angle by `by`. Does nothing if the result would be 180° or more.
 pub fn zoom(c: &mut Candidate, by: f64) {
     let is_less = |angle: Angle| angle.in_radians() < std::f64::consts::PI;
     match &mut c.scene.camera.lens {

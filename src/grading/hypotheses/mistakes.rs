@@ -81,8 +81,9 @@ macro_rules! family {
     (faces $axes:literal, $order:expr) => { row("faces_exchanged", InAreas, concat!("has the colours of its faces across ", $axes, " exchanged"), FACES, |c, object| exchange_faces(c, object, $order)) };
 }
 
-/// Rows of the table of mistakes that are not about a single object. `{gain}` in a message is
-/// replaced by the fitted factor by which light is multiplied.
+/// Rows of the table of mistakes that are not about a single object. In a message, `{gain}`
+/// represents the factor by which the program multiplies light, which is estimated from the
+/// picture.
 #[rustfmt::skip]
 pub const ROWS: &[MistakeRow] = &[
     row("stride", InAreas, "each row lies one pixel further right than the one above it: rows are taken for one pixel shorter where they are read, or longer where they are written", STRIDE, |c, _| c.layout.stride -= 1),

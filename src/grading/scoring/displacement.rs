@@ -28,8 +28,8 @@ const OFF_MIDDLE: f64 = 0.75;
 /// samples would be overlooked.
 const MOST_OFF_MIDDLE: f64 = 0.15;
 
-/// Number of coefficients of an affine displacement: a constant and the slopes in x and y, for each
-/// of the two directions.
+/// Number of coefficients of an affine displacement. For each of its two components, there are a
+/// constant and the slopes in x and y.
 const TERMS: usize = 6;
 
 /// Threshold of an estimated change of the pixel width, in standard deviations. A greater change is
@@ -82,10 +82,10 @@ pub struct Displacement {
     pub square: f64,
 }
 
-/// A symmetric matrix; only the entries on the diagonal and to the left of it are used.
+/// A symmetric matrix. Only the entries on the diagonal and to the left of it are stored and used.
 type Symmetric = [[f64; TERMS]; TERMS];
 
-/// Normal equations of the least-squares fit of a displacement to a group of pixels.
+/// Normal equations by which a displacement is fitted to a group of pixels, by least squares.
 #[derive(Clone, Default)]
 struct NormalEquations {
     normal: Symmetric,
@@ -120,7 +120,8 @@ impl NormalEquations {
             let row = |i: usize| (0..TERMS).map(move |j| matrix[i.max(j)][i.min(j)]);
             (0..TERMS).map(|i| row(i).collect()).collect()
         };
-        // Adds a small diagonal, so that a coefficient that no edge determines becomes 0.
+        // A small number is added to the diagonal. So a coefficient that no edge determines becomes
+        // 0.
         let solved = |mut matrix: Vec<Vec<f64>>| {
             let most = (0..TERMS).map(|i| matrix[i][i]).fold(0.0, f64::max);
             (0..TERMS).for_each(|i| matrix[i][i] += 1e-3 * most + 1e-30);

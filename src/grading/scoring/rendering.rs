@@ -233,9 +233,9 @@ fn completed(
 }
 
 /// Replaces exact means and variances by sampled ones in those cells of `area` in which the
-/// program's faults make a difference. `own` contains the sampled cells. They make no difference if
-/// they equal the exact ones in `correct`, or those that `right`, a tracer without faults, computes
-/// from the same samples.
+/// program's faults make a difference. `own` contains the sampled cells. The faults make no
+/// difference in a cell if it equals the exact cell in `correct`, or the cell that `right`, a
+/// tracer without faults, computes from the same samples.
 fn replaced_where_they_differ(
     mut correct: Moments,
     own: &Moments,

@@ -133,10 +133,10 @@ struct Search<'a> {
     /// Sets of mistakes with completely fitted numbers that do not explain the picture, not even
     /// with a further mistake at edges.
     completed: Vec<Vec<Mistake>>,
-    /// Least squared difference from the student's picture for any hypothesis so far, divided by
+    /// Least squared difference from the student's picture among all hypotheses so far, divided by
     /// that of a correct program.
     least_left: f64,
-    /// Cost of a correct program.
+    /// Cost ([`Judged::cost`]) of a correct program.
     cost_of_correct: f64,
     /// Hypothesis with the least cost so far, and its cost; `None` at the start.
     nearest: Option<(f64, Candidate)>,

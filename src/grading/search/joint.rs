@@ -67,7 +67,7 @@ pub fn joint_rows(judge: &Judge, right: &Candidate, tiny: &Level) -> Vec<(f64, C
     let (layout, seen): (Vec<_>, Vec<_>) = others
         .into_iter()
         .partition(|(one, _)| one.layout != right.layout);
-    // Returns the hypothesis itself, and the hypothesis with each one of the mistakes added.
+    // Returns the hypothesis itself, and its extensions by each of the mistakes alone.
     let with = |candidate: &Candidate, rows: &[(Candidate, Mistake)]| {
         let changed = rows
             .iter()

@@ -53,8 +53,8 @@ pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
         }
     }
     let light = seen[*largest.first()?].to_array();
-    // An area with a colour of the scene is more likely an object in a wrong place, so it is no
-    // patch.
+    // An area with a colour of the scene does not count as a patch, because it is more likely an
+    // object in a wrong position.
     let scene = &from.candidate().scene;
     let objects = scene.objects.iter();
     let colors = objects.flat_map(|object| object.shape.colors());

@@ -242,8 +242,8 @@ impl Trial {
         }
         let (mut low, mut high) = (-0.5, 0.5_f64.next_down());
         if at(ends[0], high) == first {
-            // The pixel has one colour from its start to its end, so the boundary is between it and
-            // the next pixel. The pixel's end is the last point before the boundary.
+            // The pixel has one colour from its start to its end, so the boundary lies between this
+            // pixel and the next one. The last point before the boundary is the pixel's end.
             low = high;
         }
         // The interval is bisected until its ends are neighbouring `f64`s. Near 0, `f64`s are so

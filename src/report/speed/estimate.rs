@@ -18,8 +18,8 @@ pub struct Estimate {
     pub cpu_runs: [f64; 2],
     /// Estimated elapsed time, in seconds.
     pub wall: f64,
-    /// Whether the error is still above the given value with the largest measured number of
-    /// samples, so that the estimate is extrapolated.
+    /// Whether the estimate is extrapolated, because even with the largest measured number of
+    /// samples, the error is above the given value.
     pub is_extrapolated: bool,
 }
 

@@ -88,8 +88,8 @@ pub struct SeriesPoint {
     pub runs: Vec<Run>,
 }
 
-/// Slope of a method's error against the number of samples, both logarithmic, for the last three
-/// measured numbers of samples. If the slope is s, the error is about proportional to the number of
+/// Slope of the logarithm of a method's error over the logarithm of the number of samples, for the
+/// last three measured numbers. If the slope is s, the error is about proportional to the number of
 /// samples to the power s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EndSlope {
@@ -99,9 +99,9 @@ pub struct EndSlope {
     /// Standard error of `slope`, computed from the slopes of single runs; `None` if there are
     /// fewer than three runs.
     pub error: Option<f64>,
-    /// Whether the line bends, i.e. its last two segments have clearly different slopes. If so,
-    /// `slope` is a mean of these two slopes, and the error for more samples cannot be predicted
-    /// from it.
+    /// Whether the line of errors bends, i.e. its last two segments have clearly different slopes.
+    /// In this case, `slope` is a mean of the two slopes, and does not predict the error for more
+    /// samples.
     pub bends: bool,
 }
 

@@ -24,7 +24,7 @@ pub fn root_mean_square(values: &[f64]) -> f64 {
 /// b = Σ(X − X̄)·(Y − Ȳ)/Σ(X − X̄)²,
 ///
 /// where X and Y are the logarithms of x and y, and X̄ and Ȳ their means. Returns `None` if there
-/// are fewer than two different x, or if a number has no logarithm.
+/// are fewer than two different values of x, or if a number has no logarithm.
 pub fn slope(points: &[(f64, f64)]) -> Option<f64> {
     let logs = points.iter().map(|&(x, y)| (libm::log(x), libm::log(y)));
     let logs: Vec<_> = logs.collect();
