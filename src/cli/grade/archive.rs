@@ -168,9 +168,9 @@ impl Archive {
     ///
     /// Returns a message if the entry is damaged or too large.
     pub fn read(&self, index: usize, budget: &UnpackBudget) -> Result<Vec<u8>, String> {
-        /// Number of bytes that are unpacked before the two limits, that of a file and that of the
-        /// whole class, are checked again. At most this many bytes are unpacked beyond a limit. It
-        /// is an ordinary buffer size.
+        /// Number of bytes that are unpacked before the limits are checked again: [`FILE_LIMIT`],
+        /// and the budget of the whole class. At most this many bytes are unpacked beyond a limit.
+        /// The value is an ordinary buffer size.
         const PIECE: u64 = 1 << 16;
         let mut zip = lock(&self.0);
         let mut entry = zip.by_index(index).map_err(|error| in_words(&error))?;

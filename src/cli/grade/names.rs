@@ -52,8 +52,8 @@ pub fn of_folder(folder: &str, slug: Option<&str>) -> String {
 pub struct Submitters(BTreeMap<String, Vec<String>>);
 
 impl Submitters {
-    /// Returns the names of a folder's students, separated by commas. Returns `None` if the folder
-    /// is not in the export.
+    /// Returns the names of a folder's students, separated by commas, or the folder's own name if
+    /// no student is listed. Returns `None` if the folder is not in the export.
     pub fn name(&self, folder: &str) -> Option<String> {
         let names = self.0.get(folder)?;
         Some(match &names[..] {

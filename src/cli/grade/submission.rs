@@ -84,9 +84,9 @@ impl SubmittedFile {
         }
     }
 
-    /// Returns whether the file may be a picture. This is always so for a file on the command line.
-    /// The name of any other file must match `chosen`, the pattern in `--picture`; without a
-    /// pattern, it must have the extension of a picture.
+    /// Returns whether the file is treated as a picture. A file that the user named on the command
+    /// line always is. Any other file must be readable, and its path must match `chosen`, the
+    /// pattern in `--picture`. Without a pattern, it must have the extension of a picture.
     pub fn is_picture(&self, chosen: Option<&Glob>) -> bool {
         let is_read = !matches!(self.content, ContentSource::Refused(_));
         self.is_named
