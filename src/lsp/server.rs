@@ -386,8 +386,9 @@ fn uri(request: &Request) -> Option<Uri> {
     Some(Uri(uri.to_owned()))
 }
 
-/// Calls `answer` and returns its result, or an internal error if it panics. The server can
-/// continue after a panic: computing an answer changes no text, and the next request may succeed.
+/// Calls `answer` and returns its result. If `answer` panics, returns an internal error. The server
+/// can continue after a panic: computing an answer changes no text, and the next request may
+/// succeed.
 ///
 /// # Errors
 ///

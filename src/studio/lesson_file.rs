@@ -22,8 +22,8 @@ impl LessonFile {
         Self { path, read }
     }
 
-    /// Reads the lesson for a page that has just connected, so that a page that is loaded again
-    /// shows what a teacher has changed. Returns null if a file cannot be read any more.
+    /// Reads the lesson for a page that has just connected. It is read anew for each page, so that
+    /// a teacher can change it and load the page again. Returns null if a file cannot be read.
     pub fn for_page(&self) -> Value {
         let text = |path: &Path| {
             let bytes = (self.read)(path).ok()?;
