@@ -52,7 +52,7 @@ pub fn run<T: Send + 'static>(
     let (done, result) = mpsc::sync_channel(1);
     // Each call starts its own thread. Threads of a pool would be missing in a forked process.
     let worker = thread::Builder::new().spawn(move || {
-        // The receiver is gone if the work was given up.
+        // If the caller no longer waits for the result, sending it fails, and the error is ignored.
         let _ = done.send(work());
     })?;
     py.detach(move || {

@@ -25,7 +25,7 @@ fn program(py: Python<'_>, args: Vec<OsString>) -> PyResult<u8> {
     background::run(
         py,
         move || cli::run_with(args, &interrupt),
-        // No exception is raised: the command cleans up and ends by itself.
+        // After Ctrl-C, no exception is raised, because the command cleans up and ends by itself.
         move |_| {
             pressed.press();
             None

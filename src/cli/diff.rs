@@ -385,8 +385,8 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
 }
 
 /// Lists the scene's objects, and says which of them are drawn right. If the scene has more than 12
-/// objects, names at most 12 wrong ones. Further wrong objects and all right ones are then only
-/// counted.
+/// objects, names at most 12 wrong objects, and only counts further wrong objects and all right
+/// ones.
 fn objects(verdict: &Verdict) -> String {
     /// Maximum number of objects that are listed. If the scene has more, objects that are right are
     /// only counted. Chosen so that the list takes a few lines; any similar number works.

@@ -35,7 +35,7 @@ pub const PICTURE_LIMIT: u64 = 8 << 20;
 
 /// Number of bytes at the start of a file that are searched for a picture, 64 KiB. A student's
 /// program may print messages before it prints its picture, and both may be saved in one file. If
-/// they are longer than 64 KiB, the picture is not found; usual messages are far shorter.
+/// the messages are longer than 64 KiB, the picture is not found; usual messages are far shorter.
 const START: u64 = 1 << 16;
 
 /// A scene that was read, but not yet parsed.
@@ -199,9 +199,9 @@ impl SceneInput {
         Report::new(&self.sources, output::style()).human(&reading.diagnostics)
     }
 
-    /// Returns what a picture file stores about the scene. `crop` is the rendered part of the
-    /// picture, or `None` if the whole picture was rendered. `whole` is the area of the whole
-    /// picture.
+    /// Returns the data that a picture file stores about the scene: its text, its overrides and the
+    /// crop. `crop` is the rendered part of the picture, or `None` if the whole picture was
+    /// rendered. `whole` is the area of the whole picture.
     pub fn into_recipe(self, crop: Option<Area>, whole: Area) -> Recipe {
         Recipe {
             overrides: self.overrides(),

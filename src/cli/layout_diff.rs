@@ -96,9 +96,9 @@ fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
             if let (Some(old), Some(new)) = (old, new) {
                 // The lines differ, so one of them or both are passed. White space is not counted
                 // here. If fewer characters precede the old line than the new line, the old line is
-                // passed, and vice versa. If their numbers are equal and only one of the lines is
-                // empty, the empty line is passed, since formatting adds and removes empty lines.
-                // Otherwise, both lines are passed.
+                // passed, and vice versa. If equally many characters precede both lines and only
+                // one of them is empty, the empty line is passed, since formatting adds and removes
+                // empty lines. Otherwise, both lines are passed.
                 let is_empty = |line: &str| line.trim().is_empty();
                 let [old, new] = [
                     (before.solid_before, !is_empty(old)),

@@ -68,8 +68,8 @@ const BYTES: &str = "the 8-bit rounding";
 /// Phrase for the rounding to 32-bit floats, used in notes to the user about an EXR file.
 const FLOATS: &str = "the 32-bit rounding";
 
-/// Accuracy of an exact picture, i.e. one computed without samples. It is collected from the
-/// picture's parts.
+/// Accuracy of an exact picture, i.e. one computed without samples. The numbers are added up over
+/// the picture's parts.
 #[derive(Default)]
 pub struct Certificate {
     pixels: u64,

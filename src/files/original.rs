@@ -42,7 +42,7 @@ impl Original {
         Ok(Self(Some((id(&found), read(path)?))))
     }
 
-    /// Returns the record of a file that does not exist.
+    /// Returns the empty copy, for a file that does not exist.
     pub fn missing() -> Self {
         Self(None)
     }

@@ -37,7 +37,7 @@ pub enum Purpose<'a> {
     Again {
         /// The folder in which the file must lie after links are followed.
         within: &'a Path,
-        /// The file as it was read before, or the record that it did not exist.
+        /// The file as it was read before, or [`Original::missing`] if it did not exist.
         original: &'a Original,
     },
     /// Pinhole chose the name of a private file in this folder, which no other user can read. An

@@ -242,8 +242,8 @@ impl Server {
         self.drop_frames(uri)
     }
 
-    /// Drops the frames of a text that has changed. Returns error responses to the requests for
-    /// these frames.
+    /// Drops the frames of a text that was changed, opened anew or closed. Returns error responses
+    /// to the requests for these frames.
     fn drop_frames(&mut self, uri: &Uri) -> Vec<Message> {
         let dropped = self.frames.drop_of(Some(uri)).into_iter();
         let changed = |id| {

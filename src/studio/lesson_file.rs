@@ -16,7 +16,7 @@ pub struct LessonFile {
 
 impl LessonFile {
     /// Makes the lesson in the file at `path`, without reading it yet. The function `read` will
-    /// read this file and that of the lesson's scene.
+    /// read this file and the file of the lesson's scene.
     pub fn new(path: &Path, read: Read) -> Self {
         let path = path.to_owned();
         Self { path, read }

@@ -32,7 +32,7 @@ const LIST_LIMIT: u64 = 16 << 20;
 
 /// Maximum number of bytes, in total, that are unpacked from all zip files of a class. It stops zip
 /// bombs, i.e. small files that unpack to very large ones. A larger limit would let a zip bomb run
-/// longer. A class that exceeds it can be unpacked beforehand.
+/// longer. If a class exceeds the limit, its zip files can be unpacked beforehand.
 const WHOLE_LIMIT: u64 = 4 << 30;
 
 /// Number of bytes that may still be unpacked from the zip files of a class. The unpacked bytes are

@@ -46,8 +46,7 @@ pub fn of_folder(folder: &str, slug: Option<&str>) -> String {
     own.strip_suffix(".zip").unwrap_or(own).to_owned()
 }
 
-/// Names of the students in a Gradescope export. Each folder of the export is mapped to the
-/// students to whom it belongs.
+/// Names of the students in a Gradescope export: maps each folder of the export to its students.
 #[derive(Debug, Default)]
 pub struct Submitters(BTreeMap<String, Vec<String>>);
 
