@@ -12,8 +12,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 EXAMPLES = ROOT / "examples"
 FIGURE = EXAMPLES / "figure_9_9.scn"
 
-# Overrides for an exact picture of figure 9.9 without a far plane. Half of the picture then shows
-# squares that become ever smaller.
+# Overrides for an exact picture of figure 9.9. The scene has no far plane, so the squares of the
+# floor become ever smaller towards the horizon.
 TO_THE_HORIZON = ["sampler.method=exact", "camera.fov=40deg"]
 
 # Width and height of the pictures that `diff` and `grade` judge, in pixels.
@@ -44,8 +44,8 @@ def spheres(count):
     colors = ["olive", "teal", "orange", "gray", "#fa0", "#3366cc", "rgb(255, 165, 0)", "steelblue"]
     lines = ["image { width 1280  height 720 }", "camera { eye (0, 0, 0)  direction (0, 0, -1)  d 1 }"]
     lines.append("sampler { method jittered  per_pixel 4  seed 1 }")
-    # At distance 1, the window is 2 high and 16/9 times as wide. The images of `count` spheres of
-    # this radius at distance 1 have 1.5 times the area of the window.
+    # At distance 1 from the eye, the visible window is 2 high and 2 · 16/9 wide. With this radius,
+    # `count` spheres at distance 1 cover 1.5 times the area of the window, overlaps included.
     radius = (1.5 * 4 * 16 / 9 / (3.14159 * count)) ** 0.5
     for index in range(count):
         depth = chance.uniform(5, 50)

@@ -93,8 +93,8 @@ fn main() {
 ///
 /// - 0: the empty combination.
 /// - 1: each mistake alone.
-/// - 2: each mistake of an object, combined with a mistake of the camera, of the board, of another
-///   object, and of the whole picture: four combinations.
+/// - 2: each mistake of an object, combined in turn with a mistake of the camera, of the board, of
+///   another object, and of the whole picture. These are four combinations.
 /// - 3: each mistake of an object, combined with one of the camera and one of another object.
 fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     let objects = OF_THE_OBJECTS.iter().enumerate();

@@ -66,8 +66,9 @@ def compare(options, scene, folder):
     measured = {name: [] for name, *_ in ways}
     phases = {name: [] for name, *_ in ways}
     others, loads = [], []
-    # The pictures from which errors are measured fill the caches, among them Mitsuba's compiled
-    # kernels. Without such pictures, a round that does not count fills the caches.
+    # The first run of a program is slower, because caches, such as Mitsuba's compiled kernels, are
+    # still empty. If errors were measured, the pictures for that have filled the caches. Otherwise,
+    # round 0 fills the caches, and does not count.
     for number in range(1 if errors else 0, options.rounds + 1):
         for name, command, fresh in ways:
             before = busy_seconds(), time.monotonic()
@@ -195,7 +196,8 @@ def measure_errors(options, ways, scene, folder):
     exact = os.path.join(folder, "exact.exr")
     as_exact = dict((name, command) for name, command, _ in ways)["Pinhole, exact"]
     run(as_exact(exact), folder, False)
-    # The rival has the figure's camera with an angle instead of `d`, and writes PNG only.
+    # The program `rival.c` has the figure's camera with an angle of view instead of `d`, and writes
+    # only PNG files.
     angle = os.path.join(folder, "angle.scn")
     with open(scene) as read, open(angle, "w") as write:
         write.write(re.sub(r"\bd\s+2\.75", "fov 40deg", read.read()))

@@ -5,8 +5,8 @@
 //     g++ -O3 -march=native -o embree benches/compare/embree.cpp -lembree3 -lpthread
 //     ./embree spheres.scn
 //
-// It does only what such a picture takes: the four rays of a pixel are traced together, and the
-// mean of their colours is kept.
+// The program does only the work that the picture needs: it traces the four rays of a pixel
+// together, and stores the mean of their brightnesses. No file is written.
 
 #include <embree3/rtcore.h>
 
@@ -47,7 +47,7 @@ std::vector<Sphere> read(const char* path) {
     return spheres;
 }
 
-// Any colours will do, as long as they are looked up.
+// Returns the brightness of a sphere, by the sphere's index. Any other values would do.
 float brightness(unsigned sphere) {
     return float(sphere % 251) / 251.0f;
 }

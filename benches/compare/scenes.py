@@ -10,10 +10,11 @@ import sys
 from math import log
 from struct import pack
 
-# Mitsuba computes with 32-bit floats and has no infinite plane. A checkerboard becomes a large
-# square, INNERMOST squares to each side of the origin, and RINGS rings around it, each RING times
-# as wide as everything inside, so that the precision of positions suits their distance. Seen from
-# 3.5 above, the part that is missing at the horizon of figure 9.9 is a fortieth of a pixel high.
+# Mitsuba has no infinite plane and computes with 32-bit floats. A checkerboard becomes one square,
+# which extends INNERMOST fields from the origin to each side, and RINGS rings around it. Each ring
+# is RING times as wide as everything inside it. With a single huge rectangle, positions near the
+# camera would be too imprecise. In figure 9.9, the part that is missing at the horizon is a
+# fortieth of a pixel high, as the camera is 3.5 above the floor.
 INNERMOST = 32.0
 RING = 8.0
 RINGS = 4
@@ -22,9 +23,9 @@ RINGS = 4
 # takes time for every shape.
 CLOUD = 100
 
-# Minimum radius of the spheres in such a shape. For ellipsoids much smaller than 1, Mitsuba's rays
-# hit the bounds instead of the surface. Therefore, the whole scene is enlarged with the camera,
-# which does not change the picture.
+# Minimum radius of spheres that share a shape. If an ellipsoid is much smaller than 1, Mitsuba's
+# rays hit its bounds instead of its surface. Therefore, the whole scene, including the camera's
+# position, is enlarged. This does not change the picture.
 SMALLEST = 4.0
 
 
@@ -64,7 +65,8 @@ def povray(scene):
         return vector([by * value for value in camera[axis]])
 
     # POV-Ray's picture is as wide as `right` and as tall as `up`, at the distance of `direction`.
-    # POV-Ray is left-handed only in how it makes a camera from `look_at`, which is not used here.
+    # POV-Ray uses left-handed axes only for cameras that are given by `look_at`, which is not used
+    # here.
     height = camera["view_height"]
     lines = [
         "#version 3.7;",
@@ -212,10 +214,10 @@ def floor(thing, color, put):
         ]
         inner = outer
     for x0, z0, x1, z1 in parts:
-        # The pattern repeats whenever a coordinate of the rectangle passes a whole number. It has
-        # `color0` where both coordinates are in the first half of a period or both in the second.
-        # The rectangle is turned to face up, so that its second coordinate is opposite to z, and
-        # must begin with an odd square.
+        # The texture repeats whenever a texture coordinate passes a whole number. It shows `color0`
+        # where both coordinates are in the first half of a period, or both in the second half. The
+        # rectangle is turned to face up, so its second coordinate increases towards negative z. The
+        # field at its corner (0, 0) is therefore odd, and `color0` is the colour of odd fields.
         half = [(x1 - x0) / 2, (z1 - z0) / 2]
         repeat = [side / square for side in half]
         yield (

@@ -17,13 +17,13 @@ use pyo3::prelude::*;
 /// ends a computation, which should be less than 100 ms. A shorter interval would cost more work.
 const INTERVAL: Duration = Duration::from_millis(20);
 
-/// Time that cancelled work gets to end, and to remove a temporary file. Work that takes longer is
-/// left to end on its own, and its result is dropped.
+/// Time that cancelled work gets to end, and to remove a temporary file. If the work takes longer,
+/// it continues in the background, and its result is dropped.
 const GRACE: Duration = Duration::from_millis(40);
 
 /// Runs `work` without the interpreter's lock, and returns its result. If the handler of a signal
-/// raises an exception, as that of Ctrl-C does, sets the flag that `work` was given and raises the
-/// exception.
+/// raises an exception, as the handler of Ctrl-C does, sets the flag that `work` was given and
+/// raises the exception.
 pub fn cancellable<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
@@ -41,8 +41,9 @@ pub fn cancellable<T: Send + 'static>(
 }
 
 /// Runs `work` without the interpreter's lock, and returns its result. If the handler of a signal
-/// raises an exception, `interrupted` gets it. If `interrupted` returns an exception, this is
-/// raised, and `work` is given up. If it returns `None`, `work` continues.
+/// raises an exception, `interrupted` gets it. If `interrupted` returns an exception, waits for
+/// `work` for at most [`GRACE`], drops its result, and raises the exception. If `interrupted`
+/// returns `None`, `work` continues.
 pub fn run<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
@@ -51,7 +52,7 @@ pub fn run<T: Send + 'static>(
     let (done, result) = mpsc::sync_channel(1);
     // Each call starts its own thread. Threads of a pool would be missing in a forked process.
     let worker = thread::Builder::new().spawn(move || {
-        // The receiver is gone if the work was given up.
+        // If the caller no longer waits for the result, sending it fails, and the error is ignored.
         let _ = done.send(work());
     })?;
     py.detach(move || {

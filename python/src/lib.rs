@@ -16,8 +16,8 @@ use std::ffi::OsString;
 use pinhole::cli::{self, Interrupt};
 use pyo3::prelude::*;
 
-/// Runs the command-line program with these arguments, the first of which is its name. Returns its
-/// exit status.
+/// Runs the command-line program and returns its exit status. The first argument is the program's
+/// name.
 #[pyfunction]
 fn program(py: Python<'_>, args: Vec<OsString>) -> PyResult<u8> {
     let interrupt = Interrupt::default();
@@ -25,7 +25,7 @@ fn program(py: Python<'_>, args: Vec<OsString>) -> PyResult<u8> {
     background::run(
         py,
         move || cli::run_with(args, &interrupt),
-        // No exception is raised: the command cleans up and ends by itself.
+        // After Ctrl-C, no exception is raised, because the command cleans up and ends by itself.
         move |_| {
             pressed.press();
             None

@@ -47,8 +47,8 @@ pub enum Numbers {
 }
 
 impl Numbers {
-    /// Converts the values to a picture of the size of `part`, with the result that reading a file
-    /// with these values would have.
+    /// Converts the values to a picture with the size of `part`. The result is the same as if the
+    /// values were read from a file.
     pub fn picture(&self, part: Area) -> PyResult<film::Picture> {
         let (film, rounding) = match self {
             Self::Bytes(numbers) => (encoded(numbers, part)?, Rounding::Byte),

@@ -128,7 +128,7 @@ pub fn write_exr(
     write_bands::<f32>(py, scene, &path, bands)
 }
 
-/// Writes bands on the calling thread, so that Python handles signals between two of them.
+/// Writes bands on the calling thread, so that Python handles signals between two bands.
 fn write_bands<T: Element + Copy + Sync>(
     py: Python<'_>,
     scene: &Scene,
@@ -182,8 +182,8 @@ fn write<P: FilePixel>(
     mut bands: impl Iterator<Item = PyResult<Film<P>>>,
 ) -> PyResult<bool> {
     let mut failed = None;
-    // The first band is made before the file is opened, so that usual pictures leave no temporary
-    // file if this process is killed while it renders.
+    // The first band is made before the file is opened. Most pictures are rendered as a single
+    // band, so they leave no temporary file if this process is killed while it renders.
     let first = bands.next();
     let all = first.into_iter().chain(bands).map(|band| {
         band.map_err(|error| {

@@ -57,7 +57,6 @@ pub fn carried(bytes: &[u8]) -> PyResult<Option<(String, Vec<String>)>> {
 }
 
 /// Reads a scene from the bytes of its text and from settings in the form of `--set`. Returns the
-/// Reads a scene from the bytes of its text and from settings in the form of `--set`. Returns the
 /// scene, or `None` if it has errors. Also returns its problems twice: as a JSON array, and as a
 /// report for people.
 #[pyfunction]
@@ -174,8 +173,8 @@ impl Scene {
         })
     }
 
-    /// Judges a picture by another program. Its size must be that of `crop`, the part of the
-    /// scene's picture that it shows.
+    /// Judges a picture that another program has made of the part `crop` of the scene. The picture
+    /// must have the size of this part.
     fn grade(&self, py: Python<'_>, picture: Pixels<'_>, crop: Crop) -> PyResult<String> {
         let numbers = picture.copied()?;
         self.run(py, move |inner, cancel| {
@@ -248,7 +247,8 @@ impl Inner {
         })
     }
 
-    /// Returns what a file stores about a part of the picture.
+    /// Returns what a picture file stores: the scene's text, its settings, and the part of the
+    /// picture.
     pub fn recipe(&self, crop: Crop) -> Recipe {
         let sets = self.sources.sets.iter();
         Recipe {
@@ -323,8 +323,8 @@ fn control<'a>(threads: Threads, cancel: &'a AtomicBool) -> Control<'a> {
 }
 
 /// Returns the cached value if it is suitable, and otherwise makes a new one. The lock is not held
-/// while a value is made. Therefore, two threads may make the same value, but the lock is free in a
-/// process that is forked meanwhile.
+/// while a value is made. Therefore, two threads may make the same value. But if the process is
+/// forked meanwhile, the lock is free in the new process.
 fn cached<T>(
     cache: &Mutex<Option<Arc<T>>>,
     is_suitable: impl Fn(&T) -> bool,

@@ -346,8 +346,8 @@ pub fn json([a, b]: [String; 2], figures: Map<String, Value>) -> Map<String, Val
     names.into_iter().chain(figures).collect()
 }
 
-/// Writes each mistake that the verdict names, and each that it only guesses. Then lists which
-/// objects of the scene are drawn right.
+/// Writes the mistakes that the verdict names, and those that it only guesses. If the picture is
+/// wrong, also lists which objects of the scene are drawn right.
 fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
     let named = verdict.mistakes.iter().map(|mistake| ("mistake", mistake));
     let guessed = verdict.guesses.iter().map(|guess| ("guess  ", guess));
@@ -385,8 +385,8 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
 }
 
 /// Lists the scene's objects, and says which of them are drawn right. If the scene has more than 12
-/// objects, names at most 12 wrong ones. Further wrong objects and all right ones are then only
-/// counted.
+/// objects, names at most 12 wrong objects, and only counts further wrong objects and all right
+/// ones.
 fn objects(verdict: &Verdict) -> String {
     /// Maximum number of objects that are listed. If the scene has more, objects that are right are
     /// only counted. Chosen so that the list takes a few lines; any similar number works.
@@ -424,7 +424,7 @@ fn state(object: &ObjectVerdict) -> String {
 }
 
 /// Formats a share as a percentage with one decimal. A share just above 0 becomes `less than 0.1`,
-/// and one just below 1 becomes `more than 99.9`.
+/// and a share just below 1 becomes `more than 99.9`.
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let rounded = (10.0 * percent).round() / 10.0;

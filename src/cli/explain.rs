@@ -16,8 +16,8 @@ use crate::{
     schema, suggest,
 };
 
-/// Maximum width of a printed page, in columns. It also limits the width on wider terminals,
-/// because longer lines are hard to read. Any similar width works.
+/// Maximum width of a printed page, in columns. Even on a wider terminal, lines are not longer,
+/// because long lines are hard to read. Any similar width works.
 const WIDEST: usize = 90;
 
 /// Prints the page of `args.words`, or the list of all codes if there are no words.
@@ -362,8 +362,8 @@ mod tests {
             let page = page(method).unwrap();
             assert!(page.matches("\n\n").count() == 3, "{page}");
         }
-        // Another program may use a different name for a word of the language. This name has the
-        // same page as the word.
+        // Another program may use a different name for a word of the language. Both names have the
+        // same page.
         for (name, meant) in explain::other_names() {
             match meant.split_once(": ") {
                 None => assert_eq!(page(name).unwrap(), page(meant).unwrap(), "{name}"),

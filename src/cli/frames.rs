@@ -16,26 +16,27 @@ use crate::{
     film::{self, Recipe},
 };
 
-/// Greatest width of a number that a pattern may ask for, as in `%09d`. A sweep has at most 1000
-/// pictures, so more digits would only be zeros.
+/// Maximum number of digits that a pattern may ask for, such as 9 in `%09d`. A sweep has at most
+/// 1000 pictures, so further digits would only be zeros.
 const MOST_DIGITS: usize = 9;
 
 /// Pattern of the paths of numbered pictures, such as `roll-%03d.png`.
 pub struct FramePattern {
     before: String,
     after: String,
-    /// Least number of digits; shorter numbers begin with zeros.
+    /// Minimum number of digits. Zeros are put before a number with fewer digits.
     digits: usize,
 }
 
 impl FramePattern {
     /// Parses the output path of a sweep, from the argument of `-o`. The path must contain exactly
-    /// one place for the number of a picture, written as `%d` or, for example, `%03d`. A percent
-    /// sign is written as `%%`.
+    /// one placeholder for the number of a picture, written as `%d` or, for example, `%03d`. A
+    /// percent sign is written as `%%`.
     ///
     /// # Errors
     ///
-    /// Returns an error if there is no path, or if it has no such place or several.
+    /// Returns an error if there is no path, if the path is not UTF-8, or if it does not contain
+    /// exactly one placeholder.
     pub fn of(output: Option<&Path>) -> Result<Self, Trouble> {
         let named = output.filter(|path| !input::is_standard(path));
         let parsed = match named.map(|path| (path.to_str(), shown(path))) {
@@ -51,7 +52,8 @@ impl FramePattern {
         })
     }
 
-    /// Parses a pattern; `None` if it does not have exactly one place for a number.
+    /// Parses a pattern. Returns `None` if the pattern does not contain exactly one placeholder for
+    /// a number.
     fn parsed(text: &str) -> Option<Self> {
         let mut parts = vec![String::new()];
         let mut digits = 0;

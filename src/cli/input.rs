@@ -35,7 +35,7 @@ pub const PICTURE_LIMIT: u64 = 8 << 20;
 
 /// Number of bytes at the start of a file that are searched for a picture, 64 KiB. A student's
 /// program may print messages before it prints its picture, and both may be saved in one file. If
-/// they are longer than 64 KiB, the picture is not found; usual messages are far shorter.
+/// the messages are longer than 64 KiB, the picture is not found; usual messages are far shorter.
 const START: u64 = 1 << 16;
 
 /// A scene that was read, but not yet parsed.
@@ -76,7 +76,7 @@ impl SceneInput {
 
     /// Reads the text of a scene that the command `command` will change. Also returns the file as
     /// it was read, or `None` if the scene comes from standard input. Fails if `path` is a named
-    /// pipe.
+    /// pipe or a picture.
     pub fn to_change(
         path: &Path,
         overrides: &Overrides,
@@ -134,9 +134,9 @@ impl SceneInput {
     }
 
     fn add(&mut self, overrides: &Overrides) {
-        // Names each source by the position of the `--set` argument on the command line.
-        // `overrides` contains only these arguments, so the numbers begin with 1 even if the list
-        // `sources.sets` already contains overrides that are stored in a picture.
+        // Each source is named after the position of its `--set` argument on the command line,
+        // counted from 1. The list `sources.sets` may already contain overrides that are stored in
+        // a picture. They are not in `overrides`, so they are not counted.
         let sets = (1..).zip(&overrides.sets);
         let sets = sets.map(|(number, set)| Source::from_text(format!("--set #{number}"), set));
         self.sources.sets.extend(sets);
@@ -179,7 +179,8 @@ impl SceneInput {
     /// last one.
     pub fn steps(&self, sweep: &Sweep) -> Result<Vec<SweepStep>, Trouble> {
         let [first, last] = sweep.ends().map(|set| self.with_set(&set));
-        // The warnings of the last scene are not printed, since they are mostly those of the first.
+        // The warnings of the last scene are not printed, since they are mostly the same as those
+        // of the first scene.
         first.scene()?;
         last.scene_without_warnings()?;
         sweep.steps(&self.sources)
@@ -198,9 +199,9 @@ impl SceneInput {
         Report::new(&self.sources, output::style()).human(&reading.diagnostics)
     }
 
-    /// Returns what a picture file stores about the scene. `crop` is the rendered part of the
-    /// picture, or `None` if the whole picture was rendered. `whole` is the area of the whole
-    /// picture.
+    /// Returns the data that a picture file stores about the scene: its text, its overrides and the
+    /// crop. `crop` is the rendered part of the picture, or `None` if the whole picture was
+    /// rendered. `whole` is the area of the whole picture.
     pub fn into_recipe(self, crop: Option<Area>, whole: Area) -> Recipe {
         Recipe {
             overrides: self.overrides(),
@@ -332,8 +333,8 @@ fn argument(path: &Path) -> io::Result<Box<dyn Read>> {
     opened(path).map(|(from, _)| from)
 }
 
-/// Opens a file, or standard input for `-`, for reading. Also returns the length in bytes of a
-/// regular file.
+/// Opens a file, or standard input for `-`, for reading. If it is a regular file, also returns its
+/// length in bytes.
 fn opened(path: &Path) -> io::Result<(Box<dyn Read>, Option<u64>)> {
     if is_standard(path) {
         return Ok((Box::new(io::stdin().lock()), None));

@@ -62,8 +62,8 @@ impl Interrupt {
         &self.0.pressed
     }
 
-    /// Registers a function that makes the command end. It is called when Ctrl-C is pressed, or at
-    /// once if that has already happened.
+    /// Registers a function that makes the command end. The function is called when Ctrl-C is
+    /// pressed. If Ctrl-C was pressed already, it is called at once.
     pub(super) fn then(&self, what: impl Fn() + Send + Sync + 'static) {
         let _ = self.0.then.set(Box::new(what));
         // If Ctrl-C was pressed before the function was registered, the handler did not call it, so

@@ -9,7 +9,7 @@ use crate::{
     scene::Scene,
 };
 
-/// Decodes a picture. A picture that is too large is rejected, unless `--large` was given.
+/// Decodes a picture. Unless `--large` was given, a picture that is too large is rejected.
 ///
 /// # Errors
 ///
@@ -28,8 +28,8 @@ pub fn picture(bytes: &[u8], large: &LargeArgs) -> Result<Picture, String> {
 /// # Errors
 ///
 /// Returns a message if neither a crop nor the whole scene has the picture's size, or if the crop
-/// lies outside of the scene. The message is the end of a sentence that begins with the picture's
-/// name.
+/// does not lie within the scene. The message is the end of a sentence that begins with the
+/// picture's name.
 pub fn part(picture: &Picture, scene: &Scene, named: Option<Area>) -> Result<Area, String> {
     let [width, height] = [picture.film.width(), picture.film.height()];
     let whole = Area::whole(scene.image.width, scene.image.height);

@@ -94,11 +94,11 @@ fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
             let (old, new) = (before.line(), after.line());
             let [mut is_removed, mut is_added] = [old.is_some(), new.is_some()];
             if let (Some(old), Some(new)) = (old, new) {
-                // Passes one line of a text, or one of each, on the way to the next lines that may
-                // correspond. If fewer characters, not counting white space, precede the line in
-                // one text than in the other, the line of that text is passed. If equally many do,
-                // an empty line is passed, since formatting adds and removes empty lines. If both
-                // lines are empty, or neither is, both are passed.
+                // The lines differ, so one of them or both are passed. White space is not counted
+                // here. If fewer characters precede the old line than the new line, the old line is
+                // passed, and vice versa. If equally many characters precede both lines and only
+                // one of them is empty, the empty line is passed, since formatting adds and removes
+                // empty lines. Otherwise, both lines are passed.
                 let is_empty = |line: &str| line.trim().is_empty();
                 let [old, new] = [
                     (before.solid_before, !is_empty(old)),
@@ -148,9 +148,9 @@ mod tests {
                 "a\nb c\n",
                 "@@ -1,3 +1,2 @@\n a\n-b\n-c\n+b c\n",
             ),
-            // Equal lines correspond only if equally many characters precede them in the two texts,
-            // not counting white space. So the last `}` of the old text corresponds to the last one
-            // of the new text, not to an earlier `}`.
+            // Equal lines correspond only if the same number of characters precedes them, not
+            // counting white space. So the last `}` of the old text corresponds to the last `}` of
+            // the new text, not to an earlier `}`.
             (
                 "}\n}\n x\n}\n",
                 "}\n}\nx\n}\n",

@@ -16,7 +16,7 @@ use crate::{
     scene::Scene,
 };
 
-/// Judges the scene and prints each condition. The status is 1 if one does not hold.
+/// Judges the scene and prints each condition. The exit status is 1 if a condition does not hold.
 pub fn run(LessonCommand::Check(args): &LessonCommand) -> Result<Status, Trouble> {
     let (lesson, start_input, start) = read(&args.lesson)?;
     let input = SceneInput::read(&args.scene, &args.overrides)?;
@@ -59,8 +59,8 @@ pub fn run(LessonCommand::Check(args): &LessonCommand) -> Result<Status, Trouble
 }
 
 /// Reads a lesson and its scene, which is in a file of the same name with the ending .scn. Warns of
-/// paths that are probably misspelt. If the lesson or the scene has mistakes, prints these and
-/// returns an error.
+/// paths that are probably misspelt. If the lesson or the scene has mistakes, prints the mistakes
+/// and returns an error.
 pub fn read(path: &Path) -> Result<(Lesson, SceneInput, Scene), Trouble> {
     let own = Overrides { sets: Vec::new() };
     let text = SceneInput::read(path, &own)?.sources;

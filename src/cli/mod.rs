@@ -66,9 +66,9 @@ pub fn run() -> ExitCode {
     }
 }
 
-/// Parses the arguments, the first of which is the program's name, and runs the command that they
-/// name. Returns its exit status. A caller that handles signals itself, such as the Python package,
-/// reports them to `interrupt`.
+/// Runs the command that the arguments name, and returns its exit status. The first argument is the
+/// program's name. A caller that handles signals itself, such as the Python package, reports the
+/// signals to `interrupt`.
 pub fn run_with(args: impl IntoIterator<Item = OsString>, interrupt: &Interrupt) -> u8 {
     let args: Vec<OsString> = args.into_iter().collect();
     let status = match Args::try_parse_from(&args) {
@@ -107,9 +107,9 @@ fn command(command: Command, interrupt: &Interrupt) -> Result<Status, Trouble> {
     }
 }
 
-/// Parses the arguments again, after making their control characters visible, and returns clap's
-/// error or help text. This text repeats arguments, and their control characters must not reach the
-/// terminal. Returns `None` if clap accepts the changed arguments.
+/// Makes the control characters in the arguments visible, parses the arguments again, and returns
+/// clap's error or help text. This text repeats arguments, whose control characters must not reach
+/// the terminal. Returns `None` if clap accepts the changed arguments.
 fn visible_answer(args: Vec<OsString>) -> Option<clap::Error> {
     let shown = |argument: OsString| visible_line(&argument.to_string_lossy()).into_owned();
     Args::try_parse_from(args.into_iter().map(shown)).err()

@@ -68,8 +68,8 @@ const BYTES: &str = "the 8-bit rounding";
 /// Phrase for the rounding to 32-bit floats, used in notes to the user about an EXR file.
 const FLOATS: &str = "the 32-bit rounding";
 
-/// Accuracy of an exact picture, i.e. one computed without samples. It is collected from the
-/// picture's parts.
+/// Accuracy of an exact picture, i.e. one computed without samples. The numbers are added up over
+/// the picture's parts.
 #[derive(Default)]
 pub struct Certificate {
     pixels: u64,
@@ -101,8 +101,8 @@ impl Certificate {
     }
 
     /// Returns a note for the user: the largest error bound of the pixels' means, and for how many
-    /// pixels the rounded values are proven right. `what` names these rounded values at the start
-    /// of a clause. The note is empty if the picture was rendered with samples.
+    /// pixels the rounded values are proven right. `what` is the phrase for the rounding, [`BYTES`]
+    /// or [`FLOATS`]. The note is empty if the picture was rendered with samples.
     fn note(&self, what: &str) -> String {
         let Some((worst, [x, y])) = self.worst else {
             return String::new();
@@ -149,8 +149,8 @@ pub enum PictureOutput {
 pub enum PathChoice {
     /// The user, on the command line.
     Explicit,
-    /// The program, which derived the path from the scene's name. An existing file is replaced only
-    /// if it is in the scene's folder.
+    /// The program, which derived the path from the scene's name. If the path is a link that leads
+    /// out of the scene's folder, writing fails.
     BesideScene,
 }
 

@@ -67,7 +67,8 @@ fn render(
     Ok(())
 }
 
-/// Returns from what the picture is made, and the part of it that is rendered.
+/// Returns what the picture's file stores: the scene, its overrides and the rendered part of the
+/// picture.
 fn recipe(args: &RenderArgs, input: SceneInput, scene: &Scene) -> Result<Recipe, Trouble> {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let crop = crop(args, &input, whole)?;

@@ -216,9 +216,9 @@ fn sheet(
     Ok(sheet)
 }
 
-/// Shortens a caption to `width` pixels. If the caption is `target=value`, of a sweep, the target
-/// is removed first, since all captions of the sweep have the same one. If that does not suffice,
-/// the start of the value is replaced by two dots. In any other caption, the end is replaced.
+/// Shortens a caption to `width` pixels. In a caption of a sweep, `target=value`, the target is
+/// removed first, since it is the same in all captions of the sweep. If the value alone is still
+/// too long, two dots replace its start. In any other caption, two dots replace the end.
 fn fitting(name: &str, width: u32) -> String {
     let most = width as usize / get_raster_width(REGULAR, LETTERS);
     if name.chars().count() <= most {

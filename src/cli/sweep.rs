@@ -98,7 +98,7 @@ impl Sweep {
     /// # Errors
     ///
     /// Returns an error if there are no values between the first and the last one, for example
-    /// because these are words or colours.
+    /// because the values are words or colours.
     pub fn steps(&self, sources: &Sources) -> Result<Vec<SweepStep>, Trouble> {
         let Self {
             from, to, count, ..

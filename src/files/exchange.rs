@@ -84,14 +84,14 @@ mod tests {
 
     use super::*;
 
-    /// Number of the test's last round, where the first is 0. From round to round, the other
-    /// program saves the file a little later, relative to the call of [`replace`]. With 400, it
-    /// saves before, during and after the call. With far fewer rounds, it would never save after
-    /// the call.
+    /// Number of the test's last round, counted from 0. In each round, the other program saves the
+    /// file a little later after the start of [`replace`] than in the round before. With 400
+    /// rounds, the program saves before, during and after the call. With far fewer rounds, it would
+    /// never save after the call.
     const LAST: u32 = 400;
 
-    /// Another program saves a file while [`replace`] replaces it. In each round, it saves a little
-    /// later than in the round before. What it saves must never be lost.
+    /// Another program saves a file while [`replace`] replaces the file. In each round, the program
+    /// saves a little later than in the round before. Its text must never be lost.
     #[test]
     fn what_is_saved_meanwhile_stays() {
         let folder = tempdir().unwrap();

@@ -31,8 +31,8 @@ pub fn is_reason(error: &io::Error) -> bool {
 
 /// Overwrites the file at `path`, unless it has changed since it was read as `original`. During the
 /// overwriting, a copy of the new content exists beside the file or in the user's state folder, so
-/// that nothing is lost if this process is killed. Fails with the error `reason` if no copy can be
-/// created. `reason` is the error with which replacing the file failed.
+/// that nothing is lost if this process is killed. If no copy can be created, fails with `reason`,
+/// the error with which replacing the file failed.
 pub fn write_in_place(
     path: &Path,
     original: &Original,

@@ -42,7 +42,7 @@ impl Original {
         Ok(Self(Some((id(&found), read(path)?))))
     }
 
-    /// Returns the record of a file that does not exist.
+    /// Returns the empty copy, for a file that does not exist.
     pub fn missing() -> Self {
         Self(None)
     }
@@ -56,8 +56,8 @@ impl Original {
     /// when it was read.
     pub(super) fn check(&self, path: &Path) -> io::Result<()> {
         let Some((original, bytes)) = &self.0 else {
-            // No file existed, so there is nothing to compare. If another program has created one
-            // since then, the function that creates the new file fails.
+            // No file existed, so there is nothing to compare. If another program has created a
+            // file since then, the function that writes the new file fails.
             return Ok(());
         };
         let is_same = || {

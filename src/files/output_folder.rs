@@ -109,8 +109,8 @@ impl OutputFolder {
     /// # Errors
     ///
     /// The user has a file with one of the names, or a file cannot be written. The check finds most
-    /// errors before any file is written. If a later error occurs, the files before the failing one
-    /// have been written.
+    /// errors before any file is written. If writing a file fails later, the files before it in
+    /// `files` have been written already.
     pub fn write<T: AsRef<[u8]>>(&mut self, files: &[(String, T)]) -> Result<(), NotWritten> {
         // Another process may have written files into the folder since it was opened, so the list
         // is read again.
@@ -119,8 +119,8 @@ impl OutputFolder {
             self.check(name)?;
         }
         // The new hashes are added to the list before any file is written, and the old ones are
-        // kept. If this process is killed while it writes, each file still has a hash from the
-        // list, whether it was written already or not, so it is not taken for the user's.
+        // kept. If this process is killed while it writes, the list contains the hashes of all old
+        // and all new files, so none of them is taken for a file of the user.
         for (name, text) in files {
             let hashes = self.hashes.entry(name.clone()).or_default();
             let hash = hash(text.as_ref());

@@ -6,7 +6,7 @@ use std::{
 };
 
 /// Returns the path of Pinhole's state folder, in which it keeps private files of the user. Returns
-/// `None` if the environment names no absolute path for it.
+/// `None` if no environment variable gives an absolute path for it.
 pub(super) fn state_folder() -> Option<PathBuf> {
     let absolute = |name| {
         env::var_os(name)

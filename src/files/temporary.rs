@@ -13,9 +13,9 @@ use tempfile::NamedTempFile;
 use super::kind;
 
 /// Maximum number of attempts to create and lock a temporary file. An attempt fails if another
-/// process, which looks for leftover files, locks the new file for a moment. This hardly happens a
-/// hundred times in a row. Without a limit, the loop would be endless if a program removed every
-/// new file.
+/// process, which looks for leftover files, locks the new file for a moment. A hundred such
+/// failures in a row are very unlikely. Without a limit, the loop would never end if a program
+/// removed every new file.
 const MOST_TRIES: usize = 100;
 
 /// Calls `make`, which creates a file, until the file can be locked, at most [`MOST_TRIES`] times.

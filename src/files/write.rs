@@ -22,7 +22,7 @@ pub trait Sink: Write + Seek {}
 
 impl<T: Write + Seek> Sink for T {}
 
-/// Purpose of a file that is written. It decides which existing file may be replaced.
+/// Purpose of a file that is written. The purpose decides whether an existing file may be replaced.
 #[derive(Clone, Copy, Debug)]
 pub enum Purpose<'a> {
     /// The user named the file. An existing file is replaced, and links are followed. A pipe or a
@@ -37,7 +37,7 @@ pub enum Purpose<'a> {
     Again {
         /// The folder in which the file must lie after links are followed.
         within: &'a Path,
-        /// The file as it was read before, or the record that it did not exist.
+        /// The file as it was read before, or [`Original::missing`] if it did not exist.
         original: &'a Original,
     },
     /// Pinhole chose the name of a private file in this folder, which no other user can read. An
@@ -62,8 +62,8 @@ impl<'a> Purpose<'a> {
         }
     }
 
-    /// Returns the content of the file as it was read before, or `None` if it was not read. Before
-    /// the file is replaced, this content is compared with the present one.
+    /// Returns the file as it was read before, or `None` if it was not read. Before the file is
+    /// replaced, its present content is compared with the content that was read.
     fn original(self) -> Option<&'a Original> {
         match self {
             Self::Change(original) | Self::Again { original, .. } => Some(original),
@@ -76,8 +76,8 @@ impl<'a> Purpose<'a> {
 /// stays unchanged until the new content is complete.
 ///
 /// The content goes into a temporary file in the same folder, which then replaces the old file. The
-/// new file gets the old owner, if the system allows that, and the old permissions except setuid,
-/// setgid and the sticky bit. Other hard links keep the old content.
+/// new file gets the old file's owner, if the system allows it, and the old permissions except
+/// setuid, setgid and the sticky bit. Other hard links to the old file keep its content.
 ///
 /// With [`Purpose::Change`], a file that cannot be replaced, for example because its folder is
 /// read-only, is overwritten in place. A copy of the new content then exists until the file is
@@ -123,8 +123,8 @@ fn write_at_once(
 }
 
 /// Writes the content that the function `write` produces to a stream, such as standard output.
-/// Fails if `cancel` is set before everything is written. The bytes that were written before stay
-/// written.
+/// Fails if `cancel` is set before everything is written. Bytes that were written before `cancel`
+/// was set cannot be taken back.
 pub fn write_stream(
     sink: impl Write,
     cancel: &AtomicBool,
@@ -136,7 +136,7 @@ pub fn write_stream(
 }
 
 /// Checks whether a file can be written at `path`, so that the user learns of an error before a
-/// long render. A full disk, for example, cannot be found in advance.
+/// long render. Some errors, such as a full disk, cannot be found in advance.
 pub fn check_writable(path: &Path, purpose: Purpose<'_>) -> io::Result<()> {
     let is_writable = match target(path, purpose) {
         Ok(WriteTarget::File(target)) => temporary(&target, purpose).and_then(NamedTempFile::close),
@@ -283,8 +283,8 @@ fn exists() -> io::Error {
     io::Error::new(io::ErrorKind::AlreadyExists, message)
 }
 
-/// Writes the content to a pipe or a device once it is complete. Fails if no program has opened the
-/// pipe's other end. Waits while the pipe is full.
+/// Writes the content to a pipe or a device once the content is complete. Fails if no program has
+/// opened the pipe's other end. Waits while the pipe is full.
 fn write_device(
     path: &Path,
     cancel: &AtomicBool,

@@ -8,9 +8,9 @@ use crate::{
 impl Mistakes {
     /// Applies the first applicable fix of each mistake, and returns the scene's text. If the new
     /// text has further mistakes, their fixes are applied, too. A fix is applicable if its
-    /// [`Applicability`] is at most `most` and is not `Placeholder`. Mistakes without such a fix
-    /// remain, and so do mistakes of settings. [`scene::fix_all`] also returns which fixes were
-    /// applied.
+    /// [`Applicability`] is at most `most` and is not `Placeholder`. Mistakes without an applicable
+    /// fix remain, and so do mistakes in settings (`--set` arguments). [`scene::fix_all`] also
+    /// returns which fixes were applied.
     ///
     /// ```
     /// use pinhole::{Applicability, Scene};

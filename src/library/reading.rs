@@ -74,9 +74,9 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// The picture does not have the scene's size, and its file does not say which part of the
-    /// scene it shows, or names a part that does not lie in the scene's picture; there is not
-    /// enough memory; or no thread can be started.
+    /// The picture has another size than the scene, and its file does not say which part of the
+    /// scene it shows. Or the file names a part that does not lie in the scene's picture. Or there
+    /// is not enough memory, or no thread can be started.
     pub fn grade(&self, picture: &Picture) -> Result<Verdict, Error> {
         let file = &picture.coded;
         let size = [picture.width(), picture.height()];

@@ -32,8 +32,8 @@ impl Picture {
     ///
     /// # Errors
     ///
-    /// The path has another extension, the crate was compiled without the feature of this format,
-    /// or the file cannot be written.
+    /// The path's extension is neither `.png` nor `.exr`, the crate was compiled without the
+    /// feature of the format, or the file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();
         let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
@@ -65,7 +65,7 @@ impl Picture {
     }
 
     /// Returns the area that the picture shows and the area of the whole picture. They differ only
-    /// if the picture was read from a file that shows a part of a scene and says which part.
+    /// if the picture shows a part of a scene and it is known which part.
     #[cfg(feature = "exr")]
     fn place(&self) -> [Area; 2] {
         let own = Area::whole(self.width(), self.height());

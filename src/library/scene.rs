@@ -81,14 +81,13 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// There is nothing of this name, or the value is not allowed for it.
+    /// The scene has nothing with the setting's name, or the value is not allowed for it.
     pub fn with_set(&self, setting: &str) -> Result<Self, Mistakes> {
         self.with_sets([setting])
     }
 
     /// Returns the scene with several more settings, as [`with_set`](Self::with_set) does. The text
-    /// is read only once, after all settings are made, so values that are allowed only together can
-    /// be set.
+    /// is read only once, with all settings. So values can be set that are allowed only together.
     ///
     /// ```
     /// let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0)  far 20 }")?;
@@ -100,7 +99,7 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// There is nothing of a setting's name, or a value is not allowed for it.
+    /// The scene has nothing with the name of one of the settings, or a value is not allowed.
     pub fn with_sets<S: AsRef<str>>(
         &self,
         settings: impl IntoIterator<Item = S>,

@@ -55,8 +55,8 @@ impl Frames {
     /// frames of other observers are dropped, too. Returns the identifiers of the requests that are
     /// replaced or dropped.
     ///
-    /// A frame of an observer is put before frames with more samples per pixel. Such a frame is
-    /// small, so it delays the other frames little, while it would have to wait long for them.
+    /// A frame of an observer is put before frames with more samples per pixel. An observer's frame
+    /// is small, so it delays the other frames little. Behind them, it would have to wait long.
     pub fn push(
         &mut self,
         id: RequestId,
@@ -67,8 +67,8 @@ impl Frames {
         let new = Frame::new(id, uri, params, version)?;
         let what = |frame: &Frame| (frame.version, frame.observer, frame.scale, frame.samples);
         let mut of_text = self.0.iter_mut().filter(|frame| frame.uri == new.uri);
-        // The queue contains the same frame already, and a part of it may be rendered. It is kept
-        // and will answer the new request instead of the earlier one.
+        // The queue contains the same frame already, and a part of it may be rendered. So this
+        // frame stays in the queue, and answers the new request instead of the earlier request.
         if let Some(known) = of_text.find(|frame| what(frame) == what(&new)) {
             return Ok(vec![mem::replace(&mut known.id, new.id)]);
         }
@@ -156,8 +156,8 @@ impl Frame {
             most.is_none_or(|most| Area::whole(width, height).pixels() <= most)
                 && longest.is_none_or(|longest| width.max(height) <= longest)
         };
-        // With the greatest scale, a frame has only one pixel and is within any limit of the
-        // request, so a scale is always found.
+        // With the greatest scale, a frame has only one pixel, which satisfies the request's
+        // limits. So a scale is always found.
         let scale = (scale..).find(fits).unwrap_or(u32::MAX);
         let (width, height) = version.size(observer.as_ref(), scale);
         let whole = Area::whole(width, height);

@@ -176,8 +176,8 @@ fn label(object: &Object) -> Cow<'_, str> {
     }
 }
 
-/// Answers with a list of the objects that the parameters select. The list does not contain their
-/// outlines.
+/// Answers with a list of the objects that the parameters select. The list does not contain the
+/// objects' outlines.
 fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
     let shown = shown(params)?;
     let objects = &version.scene.objects;
@@ -192,8 +192,8 @@ fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> 
     let listed = listed.map(|index| {
         let mut object = object(index, converter, version);
         let outline = overlays.objects.iter().find(|it| it.object == index);
-        // A checkerboard may be visible although it has no outline. So its place is unknown (null),
-        // and must not be reported as outside of the picture.
+        // A checkerboard may be visible although it has no outline. So its place is reported as
+        // unknown (null), and not as outside of the picture.
         let outline = outline.filter(|it| !(it.lines.is_empty() && is_board(&objects[index])));
         object["place"] = json!(outline.map(|outline| place(outline, overlays.size)));
         object

@@ -1,6 +1,6 @@
 //! Caches the scene of one version of a text, and the tracer's data for this scene ([`World`]).
 //!
-//! Both are computed only once for each version. Without the cache, each click on a picture of many
+//! Each is computed only once per version. Without the cache, each click on a picture of many
 //! thousand spheres would first prepare all spheres for tracing.
 
 use std::collections::VecDeque;
@@ -44,8 +44,7 @@ struct Pictured {
     observer: Option<Observer>,
     /// Factor by which the width and height of the picture are divided.
     scale: u32,
-    /// The scene with the camera of this picture, and with the width and height that are not yet
-    /// divided by `scale`.
+    /// The scene with the camera of this picture. Its width and height are not divided by `scale`.
     scene: Scene,
     world: World,
 }
@@ -63,10 +62,10 @@ impl SceneVersion {
         })
     }
 
-    /// Returns the scene and the tracer's data for its picture, which are cached. If there is an
-    /// `observer`, it takes the place of the scene's own camera. `scale` divides the width and the
-    /// height of the picture. Only the newest observer's data are kept, since the observer changes
-    /// with each movement of the pointer.
+    /// Returns the scene and the tracer's data for its picture, from the cache if possible. An
+    /// `observer` replaces the scene's own camera. `scale` divides the width and the height of the
+    /// picture. Only the newest observer's data are kept, since the observer changes with each
+    /// movement of the pointer.
     pub fn world(&mut self, observer: Option<&Observer>, scale: u32) -> (&Scene, &World) {
         let is_wanted = |it: &Pictured| it.observer.as_ref() == observer && it.scale == scale;
         let found = self.worlds.iter().position(is_wanted);

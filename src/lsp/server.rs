@@ -242,8 +242,8 @@ impl Server {
         self.drop_frames(uri)
     }
 
-    /// Drops the frames of a text that has changed. Returns error responses to the requests for
-    /// these frames.
+    /// Drops the frames of a text that was changed, opened anew or closed. Returns error responses
+    /// to the requests for these frames.
     fn drop_frames(&mut self, uri: &Uri) -> Vec<Message> {
         let dropped = self.frames.drop_of(Some(uri)).into_iter();
         let changed = |id| {
@@ -386,8 +386,9 @@ fn uri(request: &Request) -> Option<Uri> {
     Some(Uri(uri.to_owned()))
 }
 
-/// Calls `answer` and returns its result, or an internal error if it panics. The server can
-/// continue after a panic: computing an answer changes no text, and the next request may succeed.
+/// Calls `answer` and returns its result. If `answer` panics, returns an internal error. The server
+/// can continue after a panic: computing an answer changes no text, and the next request may
+/// succeed.
 ///
 /// # Errors
 ///

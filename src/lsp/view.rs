@@ -43,7 +43,8 @@ pub fn observer(params: &Value, scene: &Scene) -> Result<Option<Observer>, Refus
         fov,
         size,
     };
-    // The choice of `eye` and `lookat` depends on the other values, so these are checked first.
+    // The choice of `eye` and `lookat` depends on the other values, so the other values are checked
+    // first.
     let is_possible = given(DVec3::ZERO, DVec3::NEG_Z).is_possible();
     let observer = match (view.eye, view.lookat) {
         _ if !is_possible => None,

@@ -37,8 +37,8 @@ pub const SOCKET: &str = "/socket";
 const LIFETIME: Duration = Duration::from_secs(60);
 
 /// Decides whether a request to the host at `port` must be refused because of its address, origin
-/// or method. The token is checked elsewhere. Returns the HTTP status and the reason, or `None` if
-/// the request is allowed.
+/// or method. The token is checked later, by [`Access::admit`]. Returns the HTTP status and the
+/// reason, or `None` if the request is allowed.
 pub fn refusal(
     port: u16,
     method: &Method,
@@ -76,8 +76,8 @@ fn only<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Option<&'a str> {
 /// The tokens of a host, and the pages that have used them.
 #[derive(Debug)]
 pub struct Access {
-    /// Token in the address that is printed for the user. It admits any number of pages, at any
-    /// time.
+    /// Token in the address that is printed for the user. It admits any number of pages and never
+    /// expires.
     printed: String,
     started: Mutex<Started>,
 }
@@ -125,9 +125,9 @@ pub enum NotAdmitted {
     Unknown = 4001,
     /// The token in the command line was sent after its lifetime.
     Late = 4002,
-    /// The token in the browser's command line was sent a second time. In this case, the page that
-    /// sent it first is no longer admitted either, because one of the two pages may belong to
-    /// another user.
+    /// The token in the browser's command line was sent a second time. The page that sent the token
+    /// first is then no longer admitted either, because one of the two pages may belong to another
+    /// user.
     Twice = 4003,
 }
 

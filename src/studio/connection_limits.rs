@@ -41,7 +41,7 @@ const LIFETIME: Duration = Duration::from_secs(5);
 
 /// Maximum number of bytes that a connection may send before it has sent a valid token. If it sends
 /// more, it is closed. A browser's request has about 1 KiB, or more if other programs on this
-/// machine have set many cookies. 32 KiB leave room for these.
+/// machine have set many cookies. 32 KiB leave room for the cookies.
 const LONGEST: usize = 32 << 10;
 
 /// State of a connection, shared between the listener and the handler of the connection's requests.
@@ -72,7 +72,8 @@ impl Connected<IncomingStream<'_, Door>> for Visitor {
     }
 }
 
-/// A listener that limits each connection until the connection has sent a valid token.
+/// A listener that applies the limits to each connection until the connection has sent a valid
+/// token.
 #[derive(Debug)]
 pub struct Door {
     listener: TcpListener,

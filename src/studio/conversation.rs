@@ -148,9 +148,9 @@ impl Conversation<'_> {
         Err(Closing(Some(close_code::NORMAL)))
     }
 
-    /// Reads a message of the page. Returns `None` if none arrives in time. Returns at once if the
-    /// server has work to do: even the shortest timeout, a millisecond, would delay each slice of
-    /// the work noticeably.
+    /// Reads a message of the page. Returns `None` if none arrives in time. If the server has work
+    /// to do, returns at once, without any timeout: even the shortest one, a millisecond, would
+    /// delay each slice of the work noticeably.
     fn read(&mut self) -> Result<Option<SocketMessage>, Closing> {
         let socket = &mut self.socket;
         let read = if self.server.is_busy() {
@@ -182,8 +182,8 @@ impl Conversation<'_> {
                 Err(_) if start.elapsed() > WRITE_TIMEOUT => return Err(Closing(None)),
                 Err(_) => {}
             }
-            // A page may receive nothing for a long time. Until the message is sent, it is
-            // therefore checked whether the host or the page's session ends.
+            // Sending may take long if the page does not receive. Meanwhile, the host or the page's
+            // session may end, so both are checked again and again.
             if let Some(code) = over(self.pass, self.ending) {
                 return Err(Closing(Some(code)));
             }

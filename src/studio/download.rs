@@ -1,5 +1,6 @@
 //! Renders the picture of a text to a file that a page downloads. Uses the scene's own sampler. The
-//! file may also be an animation: pictures of a text with several values at one place.
+//! file may also be an animation. Its pictures show the text with one value after another at the
+//! same position.
 //!
 //! The host on this machine renders the file on several threads (`threaded_download`). The engine
 //! that runs in the browser has only one thread, so it renders the file in slices ([`Sliced`]).
@@ -41,7 +42,7 @@ pub fn progress(share: f64) -> Message {
 #[derive(Debug)]
 pub(super) struct Asked {
     before: String,
-    /// What stands between `before` and `after`, for each picture.
+    /// The text between `before` and `after`, for each picture.
     values: Vec<String>,
     after: String,
     /// Time for which a picture of an animation is shown, in milliseconds. `None` if there is no
@@ -95,7 +96,8 @@ impl Asked {
         Ok((scene, text))
     }
 
-    /// Begins the animation, whose first picture is `first`. Returns `None` if there is none.
+    /// Begins the animation, whose first picture is `first`. Returns `None` if the request asks for
+    /// a single picture.
     pub fn animation(&self, first: &Film<[u8; 3]>) -> io::Result<Option<Animation>> {
         let size = [first.width(), first.height()];
         let count = u32::try_from(self.count()).map_err(io::Error::other)?;
@@ -126,7 +128,8 @@ pub struct Sliced {
     /// Index of the picture that is being rendered.
     index: usize,
     picture: Rendering,
-    /// The animation, if the file is one, after its first picture.
+    /// The animation, to which finished pictures are added. `None` before the first picture is
+    /// finished, and if the file is a single picture.
     animation: Option<Animation>,
 }
 
@@ -189,7 +192,7 @@ impl Sliced {
         (self.index as f64 + self.picture.slices.share()) / self.asked.count() as f64
     }
 
-    /// Returns the file if the slice was the last one.
+    /// Renders a slice. Returns the file if the slice was the last one, and otherwise `None`.
     fn slice(&mut self) -> Result<Option<Vec<u8>>, Refusal> {
         let Rendering {
             text,

@@ -21,7 +21,7 @@ use crate::files;
 pub type Read = fn(&Path) -> io::Result<Vec<u8>>;
 
 /// Time after which the file with the drafts of a scene is removed if it does not change: 30 days.
-/// After a shorter time, drafts could be lost too early. After a longer one, many forgotten texts
+/// With a shorter time, drafts could be lost too early. With a longer time, many forgotten texts
 /// would be stored.
 const LIFETIME: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 

@@ -16,14 +16,14 @@ pub struct LessonFile {
 
 impl LessonFile {
     /// Makes the lesson in the file at `path`, without reading it yet. The function `read` will
-    /// read this file and that of the lesson's scene.
+    /// read this file and the file of the lesson's scene.
     pub fn new(path: &Path, read: Read) -> Self {
         let path = path.to_owned();
         Self { path, read }
     }
 
-    /// Reads the lesson for a page that has just connected, so that a page that is loaded again
-    /// shows what a teacher has changed. Returns null if a file cannot be read any more.
+    /// Reads the lesson for a page that has just connected. It is read anew for each page, so that
+    /// a teacher can change it and load the page again. Returns null if a file cannot be read.
     pub fn for_page(&self) -> Value {
         let text = |path: &Path| {
             let bytes = (self.read)(path).ok()?;

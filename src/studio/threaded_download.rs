@@ -40,8 +40,8 @@ impl Watch {
     }
 }
 
-/// Answers a request for a picture as a file. The file is identical to the one that
-/// `pinhole render` writes.
+/// Answers a request for a picture as a file. Unless it is an animation, the file is identical to
+/// the file that `pinhole render` writes.
 pub fn answer(request: Request, watch: &Watch) -> Message {
     let Request { id, method, params } = request;
     response(id, catch_panics(|| file(&method, &params, watch)))
@@ -67,7 +67,8 @@ fn file(method: &str, params: &Value, watch: &Watch) -> Answer {
 
 type Made = Result<Vec<u8>, Box<dyn Error>>;
 
-/// Makes a PNG, perhaps with several pictures. The first one shows `scene`.
+/// Makes a PNG file with one picture or, for an animation, several. The first picture shows
+/// `scene`.
 fn png(asked: &Asked, scene: &Scene, text: String, watch: &Watch) -> Made {
     let count = asked.count();
     let film = rendered(scene, watch, [0, count])?;
@@ -94,7 +95,7 @@ fn exr(scene: &Scene, text: String, watch: &Watch) -> Made {
     Ok(file.into_inner())
 }
 
-/// Renders the picture with the given index of the given number of pictures.
+/// Renders the picture with the index `index` among `count` pictures of a file.
 fn rendered<P: film::Pixel>(
     scene: &Scene,
     watch: &Watch,
@@ -109,7 +110,7 @@ fn rendered<P: film::Pixel>(
     } else {
         sampling.total()
     };
-    // All pictures of an animation count as if they were as much work as this one.
+    // For the progress, every picture of an animation is assumed to be as much work as this one.
     let [before, all] = [index, count].map(|pictures| expected.saturating_mul(pictures as u64));
     watch.done.store(before, Ordering::Relaxed);
     watch.expected.store(all, Ordering::Relaxed);

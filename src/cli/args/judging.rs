@@ -141,8 +141,8 @@ impl LargeArgs {
         if self.large { u64::MAX } else { DECODED_LIMIT }
     }
 
-    /// Returns the message that a picture has more than `limit` bytes or pixels (`what`). It ends
-    /// with advice to use `--large`, unless the user has done so.
+    /// Returns the message that a picture has more than `limit` units. `what` names the unit, such
+    /// as `bytes`. Unless the user gave `--large`, the message advises to use it.
     pub fn hint(&self, what: &str, limit: u64) -> String {
         let way_out = if self.large {
             ""

@@ -32,7 +32,7 @@ const LIST_LIMIT: u64 = 16 << 20;
 
 /// Maximum number of bytes, in total, that are unpacked from all zip files of a class. It stops zip
 /// bombs, i.e. small files that unpack to very large ones. A larger limit would let a zip bomb run
-/// longer. A class that exceeds it can be unpacked beforehand.
+/// longer. If a class exceeds the limit, its zip files can be unpacked beforehand.
 const WHOLE_LIMIT: u64 = 4 << 30;
 
 /// Number of bytes that may still be unpacked from the zip files of a class. The unpacked bytes are
@@ -168,9 +168,9 @@ impl Archive {
     ///
     /// Returns a message if the entry is damaged or too large.
     pub fn read(&self, index: usize, budget: &UnpackBudget) -> Result<Vec<u8>, String> {
-        /// Number of bytes that are unpacked before the two limits, that of a file and that of the
-        /// whole class, are checked again. At most this many bytes are unpacked beyond a limit. It
-        /// is an ordinary buffer size.
+        /// Number of bytes that are unpacked before the limits are checked again: [`FILE_LIMIT`],
+        /// and the budget of the whole class. At most this many bytes are unpacked beyond a limit.
+        /// The value is an ordinary buffer size.
         const PIECE: u64 = 1 << 16;
         let mut zip = lock(&self.0);
         let mut entry = zip.by_index(index).map_err(|error| in_words(&error))?;

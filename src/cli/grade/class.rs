@@ -204,8 +204,8 @@ impl Class {
         let Some(same) = same.collect::<Option<Vec<_>>>() else {
             return false;
         };
-        // Zip files contain checksums (CRC-32) of their files, so these can be compared without
-        // unpacking.
+        // A zip file contains a checksum (CRC-32) of each file in it, so such files can be compared
+        // without unpacking.
         if file.sum.is_some() && same.iter().all(|other| other.sum.is_some()) {
             return same.iter().all(|other| other.sum == file.sum);
         }
@@ -292,13 +292,14 @@ fn with_companions(students: Vec<Student>) -> Vec<Student> {
     kept
 }
 
-/// Detects that a shell expanded a pattern such as `class/*`, where `class` is a folder with the
-/// submissions of a class. Returns each such folder, with the names of the arguments that lie
-/// directly in it.
+/// Detects arguments that a shell has expanded from a pattern such as `class/*`, where `class` is a
+/// folder with the submissions of a class. Returns each such folder, with the names of the
+/// arguments that lie directly in it.
 ///
 /// The parent folder of an argument is assumed to be the folder of a class in three cases: the
 /// argument is a Git clone; the argument's name has Moodle's form, or is that of Gradescope's
-/// metadata file; or another argument in the same folder contains a picture of the same name.
+/// metadata file; or two arguments in the parent folder are folders that contain pictures of the
+/// same name.
 fn expanded_classes(paths: &[PathBuf]) -> BTreeMap<&Path, BTreeSet<&OsStr>> {
     let mut named = BTreeMap::<&Path, BTreeSet<&OsStr>>::new();
     for path in paths {
@@ -343,8 +344,8 @@ fn folder_name(path: &Path) -> Option<String> {
     Some(path.file_name()?.to_string_lossy().into_owned())
 }
 
-/// Makes equal names of students differ: appends the number that Moodle gives the submission or, if
-/// there is none, the submission's path.
+/// Makes equal names of students distinct: appends the number that Moodle gives the submission or,
+/// if there is no number, the submission's path.
 fn tell_apart(students: &mut [Student]) {
     let mut counts = BTreeMap::<String, usize>::new();
     for student in &*students {

@@ -1,9 +1,9 @@
 //! Fills in Moodle's worksheet of grades, a CSV file.
 //!
-//! A student's row is found by the number at the end of its identifier, as in Moodle's importer
-//! (`mod/assign/feedback/offline/importgradeslib.php`). A column is found by its heading. Only
-//! cells of grades and comments change. Rows that belong to no graded student are copied byte for
-//! byte.
+//! A student's row is found by the number at the end of the row's identifier, as in Moodle's
+//! importer (`mod/assign/feedback/offline/importgradeslib.php`). A column is found by its heading.
+//! Only cells of grades and comments change. Rows that belong to no graded student are copied byte
+//! for byte.
 
 use std::path::Path;
 
@@ -38,7 +38,7 @@ const HEADINGS: [&str; 5] = [
 ];
 
 /// Returns the worksheet at `path` with grades and comments filled in. `total` is the number of
-/// points for a right picture; without it, no grades are filled in.
+/// points for a right picture. If it is `None`, only comments are filled in, and no grades.
 ///
 /// # Errors
 ///
@@ -160,8 +160,8 @@ pub fn filled(
 }
 
 /// Parses an argument of `--columns`, such as `Grade=Bewertung`: the English heading, and the
-/// heading in the worksheet. Returns an error if the first one is no column of the worksheet, or if
-/// the second one is missing.
+/// heading in the worksheet. Returns an error if the English heading is not in [`HEADINGS`], or if
+/// the other heading is missing.
 fn renamed(text: &str) -> Result<(&'static str, &str), Trouble> {
     let (name, heading) = text.split_once('=').unwrap_or((text, ""));
     let mut headings = HEADINGS.into_iter();

@@ -46,14 +46,13 @@ pub fn of_folder(folder: &str, slug: Option<&str>) -> String {
     own.strip_suffix(".zip").unwrap_or(own).to_owned()
 }
 
-/// Names of the students in a Gradescope export. Each folder of the export is mapped to the
-/// students to whom it belongs.
+/// Names of the students in a Gradescope export: maps each folder of the export to its students.
 #[derive(Debug, Default)]
 pub struct Submitters(BTreeMap<String, Vec<String>>);
 
 impl Submitters {
-    /// Returns the names of a folder's students, separated by commas. Returns `None` if the folder
-    /// is not in the export.
+    /// Returns the names of a folder's students, separated by commas, or the folder's own name if
+    /// no student is listed. Returns `None` if the folder is not in the export.
     pub fn name(&self, folder: &str) -> Option<String> {
         let names = self.0.get(folder)?;
         Some(match &names[..] {

@@ -24,9 +24,9 @@ const OTHERS: &str = "*";
 pub struct PointScheme {
     /// Points for a right picture.
     pub total: f64,
-    /// Points that an object costs in total for all its mistakes whose ids are not in `mistakes`,
-    /// however many they are. Mistakes whose ids are in `mistakes` cost their own points in
-    /// addition. If this is `None`, each mistake that is not in `mistakes` costs the points of
+    /// Points that are subtracted once for each wrong object, for all its mistakes whose ids are
+    /// not in `mistakes`. A mistake whose id is in `mistakes` costs the points given there in
+    /// addition. If this is `None`, each mistake whose id is not in `mistakes` costs the points of
     /// [`OTHERS`].
     object: Option<f64>,
     /// Points that each mistake costs, by the mistake's id. The key [`OTHERS`] gives the points of

@@ -84,9 +84,10 @@ impl SubmittedFile {
         }
     }
 
-    /// Returns whether the file may be a picture. This is always so for a file on the command line.
-    /// The name of any other file must match `chosen`, the pattern in `--picture`; without a
-    /// pattern, it must have the extension of a picture.
+    /// Returns whether the file is treated as a picture. This holds for every file that the user
+    /// named on the command line. Any other file must be readable, and its path must match
+    /// `chosen`, the pattern in `--picture`. Without a pattern, it must have the extension of a
+    /// picture.
     pub fn is_picture(&self, chosen: Option<&Glob>) -> bool {
         let is_read = !matches!(self.content, ContentSource::Refused(_));
         self.is_named
@@ -108,8 +109,8 @@ pub struct PictureChoice<'s> {
 }
 
 impl Student {
-    /// Returns the student's newest picture. Returns several pictures if they are equally new, or
-    /// if it is unknown which is newest, for example in a Git clone.
+    /// Chooses the student's newest picture for grading. Chooses several pictures if they are
+    /// equally new, or if it is unknown which is newest, for example in a Git clone.
     pub fn choice(&self, chosen: Option<&Glob>) -> PictureChoice<'_> {
         let is_picture = |file: &&SubmittedFile| file.is_picture(chosen);
         let (mut pictures, others): (Vec<_>, Vec<_>) = self.files.iter().partition(is_picture);

@@ -335,7 +335,7 @@ pub fn is_zip(path: &Path) -> bool {
 }
 
 /// Returns whether a file or folder is skipped because of its name: if the name begins with a dot,
-/// i.e. is hidden, or if operating systems create files of this name.
+/// i.e. is hidden, or if an operating system creates files of this name.
 fn is_passed_over(name: &str) -> bool {
     const NAMES: [&str; 3] = ["__MACOSX", "Thumbs.db", "desktop.ini"];
     name.starts_with('.') || NAMES.iter().any(|own| name.eq_ignore_ascii_case(own))

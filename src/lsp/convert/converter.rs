@@ -268,8 +268,8 @@ impl Converter<'_> {
 }
 
 /// Reads the changes of a text from a notification. A change without the field `range` replaces the
-/// whole text. If `range` is null, an error is returned, because the client may have meant to
-/// replace only a part.
+/// whole text. If `range` is null, returns an error, because the client may have meant to replace
+/// only a part.
 pub fn changes(params: &Value) -> Result<Vec<TextChange>, Refusal> {
     let changes: Vec<Value> = at(params, "/contentChanges")?;
     let change = |change: &Value| {
