@@ -7,8 +7,8 @@ With `--rival`, `figure` also measures `rival.c`, a program for figure 9.9 alone
 Times whole processes in turns, from the start to the picture on disk, as PNG of 8 bits, on two
 threads: CPU seconds (user and system time of all threads), wall time and peak memory. `figure` also
 measures each picture's error, against Pinhole's exact one and in linear light, from another run
-that writes OpenEXR (the rival's error, from its PNG). Nothing but Python and the three programs is needed; see README.md in the
-folder above."""
+that writes OpenEXR (the rival's error, from its PNG). Nothing but Python and the programs is
+needed; see README.md in the folder above."""
 
 import argparse
 import json
