@@ -196,13 +196,7 @@ def measure_errors(options, ways, scene, folder):
     exact = os.path.join(folder, "exact.exr")
     as_exact = dict((name, command) for name, command, _ in ways)["Pinhole, exact"]
     run(as_exact(exact), folder, False)
-    # The program `rival.c` has the figure's camera with an angle of view instead of `d`, and writes
-    # only PNG files.
-    angle = os.path.join(folder, "angle.scn")
-    with open(scene) as read, open(angle, "w") as write:
-        write.write(re.sub(r"\bd\s+2\.75", "fov 40deg", read.read()))
-    exact_of_rival = os.path.join(folder, "exact_of_rival.exr")
-    run([options.pinhole, "render", angle, "--set", "sampler.method=exact", "-o", exact_of_rival], folder, False)
+    rivals_exact = exact_for_rival(options, scene, folder) if options.rival is not None else None
     errors = {}
     for name, command, _ in ways:
         is_rival = name.startswith("rival")
@@ -211,11 +205,22 @@ def measure_errors(options, ways, scene, folder):
         _, text = run(arguments + ["again"] if "LLVM" in name else arguments, folder, False)
         if "LLVM" in name:
             print(f"{name}: rendered once more in {told(text)['again']:.2f} s of wall time", file=sys.stderr)
+        reference = rivals_exact if is_rival else exact
         said = subprocess.run(
-            [options.pinhole, "diff", picture, exact_of_rival if is_rival else exact, "--format", "json"], cwd=folder, stdout=subprocess.PIPE
+            [options.pinhole, "diff", picture, reference, "--format", "json"], cwd=folder, stdout=subprocess.PIPE
         )
         errors[name] = json.loads(said.stdout)["rmse"]
     return errors
+
+
+def exact_for_rival(options, scene, folder):
+    """Renders the exact picture for the rival's camera, and returns its path. The rival has an angle
+    of view of 40 degrees instead of the figure's `d`, which makes a slightly different picture."""
+    path, angle = (os.path.join(folder, name) for name in ["rivals_exact.exr", "angle.scn"])
+    with open(scene) as read, open(angle, "w") as write:
+        write.write(re.sub(r"\bd\s+2\.75", "fov 40deg", read.read()))
+    run([options.pinhole, "render", angle, "--set", "sampler.method=exact", "-o", path], folder, False)
+    return path
 
 
 def spread(values):

@@ -245,6 +245,7 @@ function fill(tokens: Token[], elements: Element[]): Condition[] {
   });
 }
 
+/** Returns a row with a condition, whether it holds, and the value that was found. */
 function condition(it: Condition): HTMLElement {
   const item = create("li", it.holds ? "holds" : "");
   const found = it.start === null ? it.found : `${it.found}, at the start ${it.start}`;

@@ -59,8 +59,8 @@ test("the printed page has the open lesson as a whole", async t => {
   };
   assert.equal(await paper(), "");
   await choose(page, 1);
-  await until(page, "");
-  await page.waitForTimeout(500);
+  await last(page);
+  await until(page, "0 of 3 hold");
   const said = await paper();
   // The title, all steps, and each condition with its mark.
   for (const heading of ["1. The view plane", ...read(names[0], "md").match(/(?<=^## ).*$/gm)]) assert.ok(said.includes(heading), `${heading} in\n${said}`);

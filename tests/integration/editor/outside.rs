@@ -312,6 +312,11 @@ fn a_handle_dragged_too_far_stays_at_its_last_place() {
         let to = seen(&scene, &observer, DVec3::new(0.0, above, -depth));
         let changed = dragged(&text, &drag(observer, handle, to, None));
         assert_eq!(changed, Ok(text.replace(before, after)), "{handle}");
+        // With coarse steps of the pointer, the number is not rounded to one that is an error.
+        for step in [1.0, 8.0, 64.0] {
+            let coarse = dragged(&text, &drag(observer, handle, to, Some(step)));
+            read(&coarse.expect("a drag"));
+        }
     }
     let text = "camera { eye (0, 0, 0) direction (0, 0, -1) } sphere { center (0, 0, -4) }";
     let scene = read(text);
