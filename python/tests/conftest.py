@@ -26,6 +26,15 @@ triangle Sail { centroid (0.2, 1, 0.6)  normal (0.3, 0, 1)  sides (2, 2, 1)  col
 checkerboard  { colors (gray, white) }
 """
 
+ENDLESS = {"sampler.method": "random", "sampler.per_pixel": 2**53}
+"""Settings of a picture that no machine finishes during a test."""
+
+LONG_PIXEL = """\
+image { width 1  height 1 } camera { eye (0, 0, 100)  direction (0, 0, -1)  d 1 }
+sampler { method exact }
+""" + "".join(f"sphere {{ center (0, 0, {i}e-9)  radius 20 }}\n" for i in range(150))
+"""A scene of one pixel, whose exact mean takes more than a minute."""
+
 # A job in the background ignores Ctrl-C, and the processes that it starts inherit this. The tests
 # interrupt such processes, so Ctrl-C is handled here in the usual way.
 signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from conftest import TEXT
+from conftest import ENDLESS, TEXT
 from distributed import LocalCluster
 
 FOLDER = Path(__file__).parent.parent.parent / "examples" / "cluster"
@@ -84,7 +84,7 @@ def test_the_commands_of_the_page_make_the_picture(shell: Shell, tmp_path: Path)
 
 def test_a_task_that_was_killed_is_run_again(shell: Shell, tmp_path: Path) -> None:
     loop = command("for task")
-    slow = "--set sampler.per_pixel=20000000"
+    slow = " ".join(f"--set {name}={value}" for name, value in ENDLESS.items())
     task = shell(f"SLURM_ARRAY_TASK_ID=3 ./render.sh poster.scn 8 bands {slow}")
     time.sleep(2)
     assert task.poll() is None

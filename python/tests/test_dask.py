@@ -20,7 +20,7 @@ import zarr
 from conftest import TEXT
 from distributed import Client, LocalCluster
 
-SLOW = {"image.width": 192, "image.height": 128, "sampler.per_pixel": 3000}
+SLOW = {"image.width": 192, "image.height": 128, "sampler.per_pixel": 8000}
 """Settings of a picture whose blocks take long enough that a worker dies between two of them."""
 
 

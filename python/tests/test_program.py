@@ -10,7 +10,7 @@ import time
 from importlib import metadata
 from pathlib import Path
 
-from conftest import Program
+from conftest import ENDLESS, Program
 
 
 def test_exit_statuses_are_those_of_the_program(program: Program, tmp_path: Path) -> None:
@@ -71,7 +71,7 @@ sys.exit(pinhole.__main__.main())
 
 def test_ctrl_c_and_termination_leave_no_file(program: Program, tmp_path: Path) -> None:
     path = Path(sysconfig.get_path("scripts")) / "pinhole"
-    sets = ["--set", "image.width=3000", "--set", "sampler.per_pixel=4096"]
+    sets = [f"--set={name}={value}" for name, value in ENDLESS.items()]
     for number in (signal.SIGINT, signal.SIGTERM):
         render = subprocess.Popen([path, "render", "a.scn", "-o", "a.png", *sets], cwd=tmp_path)
         time.sleep(1)
