@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import sysconfig
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +26,7 @@ triangle Sail { centroid (0.2, 1, 0.6)  normal (0.3, 0, 1)  sides (2, 2, 1)  col
 checkerboard  { colors (gray, white) }
 """
 
-ENDLESS = {"sampler.method": "random", "sampler.per_pixel": 2**53}
+ENDLESS = {"sampler.method": "random", "sampler.per_pixel": 2**40}
 """Settings of a picture that no machine finishes during a test."""
 
 LONG_PIXEL = """\
@@ -75,15 +75,22 @@ def answer(program: Program) -> Callable[..., dict[str, Any]]:
 
 
 @pytest.fixture
-def python(tmp_path: Path) -> Callable[[str], "subprocess.Popen[str]"]:
-    """Starts Python on a script, which can read the scene's text as `TEXT`."""
+def python(tmp_path: Path) -> Iterator[Callable[[str], "subprocess.Popen[str]"]]:
+    """Starts Python on a script, which can read the scene's text as `TEXT`. A script that still
+    runs at the end of the test is killed."""
+    started = []
 
     def start(script: str) -> subprocess.Popen[str]:
         path = tmp_path / "script.py"
         path.write_text(f"TEXT = {TEXT!r}\n{script}")
         environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
-        return subprocess.Popen(
+        process = subprocess.Popen(
             [sys.executable, path], cwd=tmp_path, env=environment, stdout=subprocess.PIPE, text=True
         )
+        started.append(process)
+        return process
 
-    return start
+    yield start
+    for process in started:
+        process.kill()
+        process.communicate()

@@ -87,8 +87,9 @@ def test_a_task_that_was_killed_is_run_again(shell: Shell, tmp_path: Path) -> No
     slow = " ".join(f"--set {name}={value}" for name, value in ENDLESS.items())
     task = shell(f"SLURM_ARRAY_TASK_ID=3 ./render.sh poster.scn 8 bands {slow}")
     time.sleep(2)
-    assert task.poll() is None
+    status = task.poll()
     os.killpg(task.pid, signal.SIGKILL)
+    assert status is None
     output_of(task, -signal.SIGKILL)
     assert list((tmp_path / "bands").iterdir()) == []
 

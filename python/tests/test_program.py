@@ -74,10 +74,13 @@ def test_ctrl_c_and_termination_leave_no_file(program: Program, tmp_path: Path) 
     sets = [f"--set={name}={value}" for name, value in ENDLESS.items()]
     for number in (signal.SIGINT, signal.SIGTERM):
         render = subprocess.Popen([path, "render", "a.scn", "-o", "a.png", *sets], cwd=tmp_path)
-        time.sleep(1)
-        assert render.poll() is None
-        render.send_signal(number)
-        assert render.wait(timeout=10) == 130
+        try:
+            time.sleep(1)
+            assert render.poll() is None
+            render.send_signal(number)
+            assert render.wait(timeout=10) == 130
+        finally:
+            render.kill()
     assert [path.name for path in tmp_path.iterdir()] == ["a.scn"]
 
 

@@ -126,11 +126,7 @@ impl Conversation<'_> {
                 return Err(Closing(Some(code)));
             }
             self.send_file()?;
-            if let Some(done) = self.download.take_if(|it| it.thread.is_finished())
-                && let Ok(answer) = done.thread.join()
-            {
-                self.send_all(vec![answer])?;
-            }
+            self.answer_download(|download| download.thread.is_finished())?;
             self.send_progress()?;
             match self.read()? {
                 Some(SocketMessage::Text(text)) => self.handle_text(&text)?,
@@ -327,11 +323,24 @@ impl Conversation<'_> {
         self.send_all(vec![response(id, answer)])
     }
 
+    /// If `is_over` holds for the download, waits for the end of its thread, and sends the answer.
+    fn answer_download(&mut self, is_over: impl Fn(&Download) -> bool) -> Result<(), Closing> {
+        match self.download.take_if(|it| is_over(it)) {
+            Some(download) => {
+                let answer = download.thread.join();
+                self.send_all(answer.into_iter().collect())
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Renders a picture to a file on another thread, while this connection is served. If a picture
-    /// is being rendered already, answers the request with an error.
+    /// is being rendered already, answers the request with an error. A cancelled render ends
+    /// shortly after its cancellation, so the new one waits for its end.
     fn render(&mut self, request: Request) -> Result<(), Closing> {
         let id = request.id.clone();
         let failed = |why: &str| vec![response(id.clone(), Err(Refusal::failed(why)))];
+        self.answer_download(|download| download.watch.cancel.load(Ordering::SeqCst))?;
         if self.download.is_some() {
             return self.send_all(failed("another picture is being made"));
         }
