@@ -59,7 +59,7 @@ pub fn at_most(bound: f64) -> String {
 /// Formats a number so that a reader can compare it with the numbers `others`. Uses the form of
 /// [`short`] unless its rounding changes whether the number is less than, equal to or greater than
 /// one of `others`. In this case, uses all digits.
-pub fn beside(x: f64, others: &[f64]) -> String {
+pub fn comparable(x: f64, others: &[f64]) -> String {
     let text = short(x);
     let read = text.parse().unwrap_or(x);
     let decides = |other: &f64| f64::partial_cmp(&read, other) != x.partial_cmp(other);
@@ -150,11 +150,11 @@ mod tests {
 
     #[test]
     fn digits_that_decide_are_shown() {
-        assert_eq!(beside(5.000_000_1, &[5.0]), "5.0000001");
-        assert_eq!(beside(5.000_000_1, &[4.0, 6.0]), "5");
-        assert_eq!(beside(5.0, &[5.0]), "5");
-        assert_eq!(beside(1e-300, &[0.0]), "1e-300");
-        assert_eq!(beside(1.000_000_1e-300, &[1e-300]), "1.0000001e-300");
+        assert_eq!(comparable(5.000_000_1, &[5.0]), "5.0000001");
+        assert_eq!(comparable(5.000_000_1, &[4.0, 6.0]), "5");
+        assert_eq!(comparable(5.0, &[5.0]), "5");
+        assert_eq!(comparable(1e-300, &[0.0]), "1e-300");
+        assert_eq!(comparable(1.000_000_1e-300, &[1e-300]), "1.0000001e-300");
     }
 
     #[test]

@@ -118,5 +118,5 @@ fn at_center(world: &World, block: Area) -> usize {
     };
     let ((x, offset_x), (y, offset_y)) =
         (place(block.x, block.width), place(block.y, block.height));
-    world.slot_at(x, y, DVec2::new(offset_x, offset_y))
+    world.color_index_at(x, y, DVec2::new(offset_x, offset_y))
 }

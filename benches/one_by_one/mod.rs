@@ -27,7 +27,7 @@ pub fn one_by_one(world: &World, sampling: &Sampling, part: Area) -> Film {
             let part = first..end;
             sampling.place(SimdWidth::Widest, [x, y], samples, part, &mut offsets);
             for offset in offsets.iter() {
-                counts[world.slot_at(x, y, offset)] += 1;
+                counts[world.color_index_at(x, y, offset)] += 1;
             }
             first = end;
         }

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use super::{
-    Status, Trouble,
+    CommandError, Status,
     args::{AnswerFormat, CheckArgs},
-    each,
+    command_error, each,
     input::{SceneInput, change, check_standard, is_standard},
     interrupt::Interrupt,
-    output, trouble,
+    output,
     unified_diff::unified_diff,
 };
 use crate::{
@@ -18,18 +18,18 @@ use crate::{
 };
 
 /// Checks each scene in turn and reports its problems. Returns the largest of the exit statuses.
-pub fn run(args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+pub fn run(args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, CommandError> {
     check_standard(&args.scenes)?;
     let is_json = args.format.format == AnswerFormat::Json;
     if args.fix && is_json && args.scenes.iter().any(|path| is_standard(path)) {
         let hint = "the text of `-` goes to standard output itself";
-        return Err(trouble(format!(
+        return Err(command_error(format!(
             "--fix and --format json do not go together here: {hint}"
         )));
     }
     if args.diff && is_json {
         let hint = "both go to standard output";
-        return Err(trouble(format!(
+        return Err(command_error(format!(
             "--diff and --format json do not go together: {hint}"
         )));
     }
@@ -38,7 +38,7 @@ pub fn run(args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     }))
 }
 
-fn one(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+fn one(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, CommandError> {
     let input = if args.fix {
         fixed(path, args, interrupt)?
     } else {
@@ -50,7 +50,7 @@ fn one(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, T
 /// Applies the fixes of a file's errors, and reports which fixes were applied. Writes the changed
 /// file, or prints the changed text if the input is standard input. With `--diff`, only prints the
 /// changes. Returns the input after the fixes.
-fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<SceneInput, Trouble> {
+fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<SceneInput, CommandError> {
     let (mut input, original) = SceneInput::to_change(path, &args.overrides, "--fix")?;
     let most = if args.unsafe_fixes {
         Applicability::Unsafe
@@ -119,7 +119,7 @@ fn held_back(name: &str, fixed: &Fixed, is_utf8: bool) -> String {
     text
 }
 
-fn report(input: &SceneInput, format: AnswerFormat) -> Result<Status, Trouble> {
+fn report(input: &SceneInput, format: AnswerFormat) -> Result<Status, CommandError> {
     let reading = scene::read(&input.sources);
     match format {
         AnswerFormat::Human => {
@@ -136,6 +136,6 @@ fn report(input: &SceneInput, format: AnswerFormat) -> Result<Status, Trouble> {
     }
     Ok(match reading.scene {
         Some(_) => Status::Done,
-        None => Status::SceneErrors,
+        None => Status::Negative,
     })
 }

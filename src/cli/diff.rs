@@ -6,15 +6,16 @@ use std::{fmt::Write, path::Path, sync::atomic::AtomicBool};
 use serde_json::{Map, Value, json};
 
 use super::{
-    Status, Trouble,
+    CommandError, Status,
     args::{AnswerFormat, DiffArgs, LargeArgs},
+    command_error,
     exact_pictures::{self, EXACT_STEPS, is_scene},
     input::{
         self, FileBytes, IfNotPicture, SceneInput, is_standard, shown, unreadable, unwritable,
     },
     interrupt::Interrupt,
     judge::{self, quoted},
-    output, progress, trouble,
+    output, progress,
 };
 use crate::{
     diagnostic::{visible, visible_line},
@@ -27,10 +28,10 @@ use crate::{
 /// Compares the files of the arguments A and B. If A is a picture and B a scene, the verdict on A
 /// decides the exit status, unless `--strict` or `--tolerance` is given. Otherwise, the status is
 /// [`Status::Done`] if all differences are within the tolerance.
-pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, CommandError> {
     if is_standard(&args.a) && is_standard(&args.b) {
         let message = "standard input can be read once only, and `-` is given twice";
-        return Err(trouble(message));
+        return Err(command_error(message));
     }
     if let Some(path) = &args.output {
         check_heat_map(path, args)?;
@@ -43,7 +44,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
             return compare(args, [&a, &b], EXACT_STEPS, cancel);
         }
         FileBytes::Other(_) if is_scene(&args.a) => {
-            return Err(trouble(format!(
+            return Err(command_error(format!(
                 "{} is a scene: the picture comes first, `pinhole diff PICTURE SCENE`; `pinhole render` makes one",
                 shown(&args.a)
             )));
@@ -72,7 +73,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
                 "`--set` changes a scene, and {} is a picture",
                 shown(&args.b)
             );
-            return Err(trouble(message));
+            return Err(command_error(message));
         }
         let b = read(&args.b, &b, &args.large)?;
         let steps = a.rounding.steps() + b.rounding.steps();
@@ -82,7 +83,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let input = SceneInput::of(&args.b, b, &args.overrides);
     let scene = input.scene()?;
     let part = judge::part(&a, &scene, args.crop)
-        .map_err(|misfit| trouble(format!("{} {misfit}", shown(&args.a))))?;
+        .map_err(|misfit| command_error(format!("{} {misfit}", shown(&args.a))))?;
     let reference = progress::rendering(part.pixels(), None, cancel, |control| {
         let reference = Reference::new(&scene, part, a.rounding, control);
         reference.map(|reference| reference.with_effort(args.effort.effort))
@@ -90,7 +91,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let steps = args.tolerance.unwrap_or_else(|| a.rounding.steps());
     let comparison = reference
         .compare(&a.film, steps)
-        .map_err(|error| trouble(error.to_string()))?;
+        .map_err(|error| command_error(error.to_string()))?;
     let verdict = reference.judge(&a, jpeg, &comparison, cancel)?;
     let is_equal = comparison.is_equal();
     let is_right = matches!(verdict.kind, Kind::Right | Kind::Noise);
@@ -116,7 +117,7 @@ fn compare(
     films: [&Film; 2],
     steps: f64,
     cancel: &AtomicBool,
-) -> Result<Status, Trouble> {
+) -> Result<Status, CommandError> {
     let steps = args.tolerance.unwrap_or(steps);
     let bounds = None;
     let tolerance = Tolerance { steps, bounds };
@@ -139,13 +140,13 @@ fn status(is_accepted: bool) -> Status {
     if is_accepted {
         Status::Done
     } else {
-        Status::SceneErrors
+        Status::Negative
     }
 }
 
 /// Decodes the picture `bytes` of the file `path`. Warns if its file format changes colours, as
 /// JPEG does. Returns an error if the picture cannot be decoded.
-fn read(path: &Path, bytes: &[u8], large: &LargeArgs) -> Result<Picture, Trouble> {
+fn read(path: &Path, bytes: &[u8], large: &LargeArgs) -> Result<Picture, CommandError> {
     let picture = judge::picture(bytes, large).map_err(|error| unreadable(path, &error))?;
     if let Some(warning) = picture.coding.warning() {
         output::warning(&format!("{}: {warning}", shown(path)));
@@ -154,13 +155,13 @@ fn read(path: &Path, bytes: &[u8], large: &LargeArgs) -> Result<Picture, Trouble
 }
 
 /// Checks, before the comparison, that the heat map can be written to `path`.
-fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
+fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), CommandError> {
     if !path
         .to_string_lossy()
         .to_ascii_lowercase()
         .ends_with(".png")
     {
-        return Err(trouble(format!(
+        return Err(command_error(format!(
             "the ending of {} is not .png, and a heat map is a PNG",
             shown(path)
         )));
@@ -170,10 +171,10 @@ fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
 }
 
 /// Rejects a heat map's path that names one of the compared files.
-fn check_is_not_compared(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
+fn check_is_not_compared(path: &Path, args: &DiffArgs) -> Result<(), CommandError> {
     for other in [&args.a, &args.b] {
         if input::is_same_file(path, other) {
-            return Err(trouble(format!(
+            return Err(command_error(format!(
                 "{} is compared: say with `-o HEATMAP` where else the heat map goes",
                 shown(path)
             )));
@@ -188,7 +189,7 @@ fn write_heat_map(
     tolerance: Tolerance,
     is_equal: bool,
     cancel: &AtomicBool,
-) -> Result<(), Trouble> {
+) -> Result<(), CommandError> {
     let Some(path) = &args.output else {
         return Ok(());
     };
@@ -196,7 +197,7 @@ fn write_heat_map(
         output::warning(&"pictures of different sizes have no heat map");
         return Ok(());
     }
-    let map = film::heat_map(a, b, tolerance).map_err(|error| trouble(error.to_string()))?;
+    let map = film::heat_map(a, b, tolerance).map_err(|error| command_error(error.to_string()))?;
     // The path is checked again, since it may have become a link to a compared file during the
     // comparison.
     check_is_not_compared(path, args)?;
@@ -228,7 +229,7 @@ struct DiffReport {
 }
 
 impl DiffReport {
-    fn print(&self, format: AnswerFormat) -> Result<(), Trouble> {
+    fn print(&self, format: AnswerFormat) -> Result<(), CommandError> {
         match format {
             AnswerFormat::Human => output::answer(&self.human())?,
             AnswerFormat::Json => output::to_programs(format!("{}\n", self.json()).as_bytes())?,

@@ -4,10 +4,11 @@
 use std::{path::Path, sync::atomic::AtomicBool};
 
 use super::{
-    Trouble,
+    CommandError,
     args::DiffArgs,
+    command_error,
     input::{SceneInput, shown},
-    progress, trouble,
+    progress,
 };
 use crate::{
     area::Area,
@@ -30,10 +31,10 @@ pub fn is_scene(path: &Path) -> bool {
 }
 
 /// Renders the exact pictures of both scenes that the arguments name.
-pub fn of_scenes(args: &DiffArgs, cancel: &AtomicBool) -> Result<[Film; 2], Trouble> {
+pub fn of_scenes(args: &DiffArgs, cancel: &AtomicBool) -> Result<[Film; 2], CommandError> {
     if args.crop.is_some() {
         let message = "`--crop` says which part of a scene a picture shows, and these are scenes";
-        return Err(trouble(message));
+        return Err(command_error(message));
     }
     let a = SceneInput::read(&args.a, &args.overrides)?;
     let b = SceneInput::read(&args.b, &args.overrides)?;
@@ -45,7 +46,7 @@ pub fn of_scenes(args: &DiffArgs, cancel: &AtomicBool) -> Result<[Film; 2], Trou
     if sizes[0] != sizes[1] {
         let [[w, h], [other_w, other_h]] = sizes;
         let [a, b] = [&args.a, &args.b].map(|path| shown(path));
-        return Err(trouble(format!(
+        return Err(command_error(format!(
             "{a} is {w} x {h} pixels and {b} is {other_w} x {other_h}: give both one size, such as by `--set image.width={w} --set image.height={h}`"
         )));
     }

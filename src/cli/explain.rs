@@ -8,7 +8,7 @@ use std::{borrow::Cow, fmt::Write};
 
 use textwrap::WordSplitter;
 
-use super::{Status, Trouble, args::ExplainArgs, output, trouble};
+use super::{CommandError, Status, args::ExplainArgs, command_error, output};
 use crate::{
     diagnostic::Style,
     explain::{self, GROUPS},
@@ -21,7 +21,7 @@ use crate::{
 const WIDEST: usize = 90;
 
 /// Prints the page of `args.words`, or the list of all codes if there are no words.
-pub fn run(args: &ExplainArgs) -> Result<Status, Trouble> {
+pub fn run(args: &ExplainArgs) -> Result<Status, CommandError> {
     let style = output::page_style();
     let headings = style.map_or(Headings::Plain, Headings::of);
     let text = match args.words.as_slice() {
@@ -65,11 +65,11 @@ impl Headings {
 
 /// Returns the page of a diagnostic code or a word, as Markdown. If there is none, the error
 /// suggests a similar word.
-fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
+fn page(word: &str) -> Result<Cow<'static, str>, CommandError> {
     let trimmed = word.trim();
     if trimmed.is_empty() {
         let hint = "`pinhole explain` lists all codes";
-        return Err(trouble(format!("the code is empty: {hint}")));
+        return Err(command_error(format!("the code is empty: {hint}")));
     }
     if trimmed == "language" {
         return Ok(explain::LANGUAGE.into());
@@ -125,7 +125,7 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     let hint = match (near, of_block) {
         (_, Some((row, field))) => {
             let fields = suggest::list(row.field_names());
-            return Err(trouble(format!(
+            return Err(command_error(format!(
                 "{} has no field `{field}`: it takes {fields}",
                 row.noun
             )));
@@ -136,7 +136,9 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
                 .to_owned()
         }
     };
-    Err(trouble(format!("nothing is known about `{word}`: {hint}")))
+    Err(command_error(format!(
+        "nothing is known about `{word}`: {hint}"
+    )))
 }
 
 /// Appends the reasons why a sampling method works well, if `word` is the name of a method.
@@ -409,10 +411,10 @@ mod tests {
                 "a sphere has no field `roll`: it takes center, radius and color",
             ),
         ] {
-            let Err(trouble) = page(word) else {
+            let Err(error) = page(word) else {
                 panic!("{word}")
             };
-            assert!(trouble.to_string().starts_with(said), "{trouble}");
+            assert!(error.to_string().starts_with(said), "{error}");
         }
         assert!(page("box.radius").is_err());
     }

@@ -1,11 +1,12 @@
 //! `figure`: draws a figure of a scene as SVG, for teaching material.
 
 use super::{
-    Status, Trouble,
+    CommandError, Status,
     args::FigureArgs,
+    command_error,
     input::{SceneInput, is_same_file, is_standard, shown, unwritable},
     interrupt::Interrupt,
-    output, trouble,
+    output,
 };
 use crate::{
     figure::{self, Choice, Kind},
@@ -13,7 +14,7 @@ use crate::{
 };
 
 /// Draws the figure that the arguments ask for, and writes it to a file or to standard output.
-pub fn run(args: &FigureArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+pub fn run(args: &FigureArgs, interrupt: &Interrupt) -> Result<Status, CommandError> {
     let output = args.output.as_deref().filter(|path| !is_standard(path));
     if let Some(path) = output {
         let name = shown(path);
@@ -21,12 +22,12 @@ pub fn run(args: &FigureArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
             .extension()
             .is_some_and(|it| it.eq_ignore_ascii_case("svg"))
         {
-            return Err(trouble(format!(
+            return Err(command_error(format!(
                 "a figure is an SVG: {name} should end in .svg"
             )));
         }
         if is_same_file(path, &args.scene) {
-            return Err(trouble(format!(
+            return Err(command_error(format!(
                 "{name} is the scene itself: say with `-o FILE` where the figure goes"
             )));
         }
@@ -38,7 +39,7 @@ pub fn run(args: &FigureArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         pixel: args.pixel,
         object: args.object.as_deref(),
     };
-    let svg = figure::figure(&scene, args.kind, choice).map_err(trouble)?;
+    let svg = figure::figure(&scene, args.kind, choice).map_err(command_error)?;
     if args.kind == Kind::Roll && scene.camera.roll.in_degrees() == 0.0 {
         output::warning(
             &"the camera does not roll, so nothing turns: `--set camera.roll=20deg` shows what a roll does",

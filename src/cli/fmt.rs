@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{
-    Status, Trouble,
+    CommandError, Status,
     args::{FmtArgs, Overrides},
     each,
     input::{SceneInput, change, check_standard},
@@ -15,14 +15,14 @@ use crate::{diagnostic::Report, format::format, source::Sources};
 
 /// Formats each scene in turn. With `--check`, prints what would change instead. Returns the
 /// largest of the exit statuses.
-pub fn run(args: &FmtArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+pub fn run(args: &FmtArgs, interrupt: &Interrupt) -> Result<Status, CommandError> {
     check_standard(&args.scenes)?;
     Ok(each(&args.scenes, interrupt, |path| {
         one(path, args, interrupt)
     }))
 }
 
-fn one(path: &Path, args: &FmtArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+fn one(path: &Path, args: &FmtArgs, interrupt: &Interrupt) -> Result<Status, CommandError> {
     let no_overrides = Overrides { sets: Vec::new() };
     let (input, original) = SceneInput::to_change(path, &no_overrides, "fmt")?;
     let source = &input.sources.file;
@@ -32,7 +32,7 @@ fn one(path: &Path, args: &FmtArgs, interrupt: &Interrupt) -> Result<Status, Tro
         }
         Ok(formatted) if args.check => {
             output::to_people(&layout_diff(source, &formatted));
-            Ok(Status::SceneErrors)
+            Ok(Status::Negative)
         }
         Ok(formatted) => {
             match &original {
@@ -44,7 +44,7 @@ fn one(path: &Path, args: &FmtArgs, interrupt: &Interrupt) -> Result<Status, Tro
         Err(mistakes) => {
             let sources = Sources::new(source.clone());
             output::to_people(&Report::new(&sources, output::style()).human(&mistakes));
-            Ok(Status::SceneErrors)
+            Ok(Status::Negative)
         }
     }
 }

@@ -6,10 +6,9 @@ use std::{
 };
 
 use super::{
-    Trouble,
+    CommandError, command_error,
     input::{self, shown},
     picture::{FileFormat, PictureOutput},
-    trouble,
 };
 use crate::{
     files,
@@ -37,7 +36,7 @@ impl FramePattern {
     ///
     /// Returns an error if there is no path, if the path is not UTF-8, or if it does not contain
     /// exactly one placeholder.
-    pub fn of(output: Option<&Path>) -> Result<Self, Trouble> {
+    pub fn of(output: Option<&Path>) -> Result<Self, CommandError> {
         let named = output.filter(|path| !input::is_standard(path));
         let parsed = match named.map(|path| (path.to_str(), shown(path))) {
             None => Err("it takes `-o FILE`".to_owned()),
@@ -46,7 +45,7 @@ impl FramePattern {
                 .ok_or_else(|| format!("{shown} has no single place for the number of a picture")),
         };
         parsed.map_err(|why| {
-            trouble(format!(
+            command_error(format!(
                 "a sweep makes several files, and {why}: write a name such as `-o 'roll-%03d.png'`, in which a number of three digits takes the place of `%03d` (`%d` for as many as it needs, `%%` for a percent sign)"
             ))
         })

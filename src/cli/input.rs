@@ -7,12 +7,12 @@ use std::{
 };
 
 use super::{
-    Trouble,
+    CommandError,
     args::{LargeArgs, Overrides},
+    command_error,
     interrupt::Interrupt,
     output,
     sweep::{Sweep, SweepStep},
-    trouble,
 };
 use crate::{
     area::Area,
@@ -56,10 +56,10 @@ pub fn is_standard(path: &Path) -> bool {
 }
 
 /// Rejects arguments that would read standard input twice.
-pub fn check_standard(paths: &[PathBuf]) -> Result<(), Trouble> {
+pub fn check_standard(paths: &[PathBuf]) -> Result<(), CommandError> {
     match paths.iter().filter(|path| is_standard(path)).count() {
         0 | 1 => Ok(()),
-        _ => Err(trouble(
+        _ => Err(command_error(
             "standard input can be read once only, and `-` is given twice",
         )),
     }
@@ -68,7 +68,7 @@ pub fn check_standard(paths: &[PathBuf]) -> Result<(), Trouble> {
 impl SceneInput {
     /// Reads the scene from the file `path` or, for `-`, from standard input, and adds the
     /// overrides of the command line.
-    pub fn read(path: &Path, overrides: &Overrides) -> Result<Self, Trouble> {
+    pub fn read(path: &Path, overrides: &Overrides) -> Result<Self, CommandError> {
         let bytes = argument(path).and_then(limited);
         let bytes = bytes.map_err(|error| unreadable(path, &error))?;
         Self::of_bytes(path, bytes, overrides)
@@ -81,7 +81,7 @@ impl SceneInput {
         path: &Path,
         overrides: &Overrides,
         command: &str,
-    ) -> Result<(Self, Option<Original>), Trouble> {
+    ) -> Result<(Self, Option<Original>), CommandError> {
         let (input, original) = if is_standard(path) {
             (Self::read(path, overrides)?, None)
         } else {
@@ -98,7 +98,7 @@ impl SceneInput {
             (Self::of_bytes(path, bytes, overrides)?, Some(original))
         };
         if input.is_picture {
-            return Err(trouble(format!(
+            return Err(command_error(format!(
                 "{} is a picture; {command} takes the scene's text",
                 shown(path)
             )));
@@ -106,7 +106,7 @@ impl SceneInput {
         Ok((input, original))
     }
 
-    fn of_bytes(path: &Path, bytes: Vec<u8>, overrides: &Overrides) -> Result<Self, Trouble> {
+    fn of_bytes(path: &Path, bytes: Vec<u8>, overrides: &Overrides) -> Result<Self, CommandError> {
         let name = path.display().to_string();
         let mut input = if bytes.starts_with(&SIGNATURE) {
             let recipe = read_recipe(&bytes).map_err(|error| unreadable(path, &error))?;
@@ -157,27 +157,27 @@ impl SceneInput {
 
     /// Parses the scene and prints its problems. Warnings about objects outside of the picture are
     /// not printed, since such objects may be intended, for example in one frame of an animation.
-    /// Returns [`Trouble::SceneErrors`] if the scene has errors.
-    pub fn scene(&self) -> Result<Scene, Trouble> {
+    /// Returns [`CommandError::SceneErrors`] if the scene has errors.
+    pub fn scene(&self) -> Result<Scene, CommandError> {
         let mut reading = scene::read(&self.sources);
         let is_of_text = |it: &Diagnostic| it.code == "pinhole::outside_picture";
         reading.diagnostics.retain(|it| !is_of_text(it));
         output::to_people(&self.report(&reading));
-        reading.scene.ok_or(Trouble::SceneErrors)
+        reading.scene.ok_or(CommandError::SceneErrors)
     }
 
     /// Parses the scene and prints its problems if it has errors.
-    pub fn scene_without_warnings(&self) -> Result<Scene, Trouble> {
+    pub fn scene_without_warnings(&self) -> Result<Scene, CommandError> {
         let reading = scene::read(&self.sources);
         if reading.scene.is_none() {
             output::to_people(&self.report(&reading));
         }
-        reading.scene.ok_or(Trouble::SceneErrors)
+        reading.scene.ok_or(CommandError::SceneErrors)
     }
 
     /// Returns the scenes of a sweep. Prints the problems of the first scene, and the errors of the
     /// last one.
-    pub fn steps(&self, sweep: &Sweep) -> Result<Vec<SweepStep>, Trouble> {
+    pub fn steps(&self, sweep: &Sweep) -> Result<Vec<SweepStep>, CommandError> {
         let [first, last] = sweep.ends().map(|set| self.with_set(&set));
         // The warnings of the last scene are not printed, since they are mostly the same as those
         // of the first scene.
@@ -235,17 +235,17 @@ pub fn name_copies(path: &Path) {
 }
 
 /// Makes the error message that a path cannot be read.
-pub fn unreadable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
-    trouble(format!("cannot read {}: {error}", shown(path)))
+pub fn unreadable(path: &Path, error: &dyn std::fmt::Display) -> CommandError {
+    command_error(format!("cannot read {}: {error}", shown(path)))
 }
 
 /// Makes the error message that a path cannot be written to.
-pub fn unwritable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
-    trouble(format!("cannot write to {}: {error}", shown(path)))
+pub fn unwritable(path: &Path, error: &dyn std::fmt::Display) -> CommandError {
+    command_error(format!("cannot write to {}: {error}", shown(path)))
 }
 
 /// Makes the error message that files cannot be written into an output folder.
-pub fn not_written(why: NotWritten) -> Trouble {
+pub fn not_written(why: NotWritten) -> CommandError {
     unwritable(&why.path, &why.error)
 }
 
@@ -255,7 +255,7 @@ pub fn change(
     original: &Original,
     text: &str,
     interrupt: &Interrupt,
-) -> Result<(), Trouble> {
+) -> Result<(), CommandError> {
     let purpose = Purpose::Change(original);
     files::write(path, purpose, interrupt.watch(), |out| {
         out.write_all(text.as_bytes())

@@ -1,7 +1,7 @@
 //! `inspect`: prints the properties that follow from a scene, such as its field of view.
 
 use super::{
-    Status, Trouble,
+    CommandError, Status,
     args::{AnswerFormat, InspectArgs},
     input::SceneInput,
     output,
@@ -9,7 +9,7 @@ use super::{
 use crate::inspect;
 
 /// Prints the properties of a scene, as readable text or as JSON.
-pub fn run(args: &InspectArgs) -> Result<Status, Trouble> {
+pub fn run(args: &InspectArgs) -> Result<Status, CommandError> {
     let input = SceneInput::read(&args.scene, &args.overrides)?;
     let scene = input.scene()?;
     let inspection = inspect::inspect(&scene, &input.sources.file);

@@ -9,7 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::{Status, Trouble, trouble};
+use super::{CommandError, Status, command_error};
 
 /// Record of Ctrl-C, or of a signal that asks the process to end.
 ///
@@ -35,10 +35,10 @@ const GRACE: Duration = Duration::from_secs(2);
 impl Interrupt {
     /// Installs a handler that records Ctrl-C. A process can have only one such handler; for a
     /// second one, an error is returned.
-    pub(super) fn listen(&self) -> Result<(), Trouble> {
+    pub(super) fn listen(&self) -> Result<(), CommandError> {
         let interrupt = self.clone();
         ctrlc::set_handler(move || interrupt.press())
-            .map_err(|error| trouble(format!("cannot listen for Ctrl-C: {error}")))
+            .map_err(|error| command_error(format!("cannot listen for Ctrl-C: {error}")))
     }
 
     /// Records Ctrl-C. Ends the process if no command watches for it, or if this is a further
@@ -80,13 +80,13 @@ impl Interrupt {
         self.0.pressed.load(Ordering::SeqCst)
     }
 
-    /// Returns the error to report for a failed command: [`Trouble::Interrupted`] if Ctrl-C was
-    /// pressed, since Ctrl-C is then the cause of the failure, and otherwise `trouble`.
-    pub(super) fn or(&self, trouble: Trouble) -> Trouble {
+    /// Returns the error to report for a failed command: [`CommandError::Interrupted`] if Ctrl-C
+    /// was pressed, since Ctrl-C is then the cause of the failure, and otherwise `error`.
+    pub(super) fn or(&self, error: CommandError) -> CommandError {
         if self.pressed() {
-            Trouble::Interrupted
+            CommandError::Interrupted
         } else {
-            trouble
+            error
         }
     }
 }

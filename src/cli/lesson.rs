@@ -5,10 +5,11 @@ use std::path::Path;
 use serde_json::json;
 
 use super::{
-    Status, Trouble,
+    CommandError, Status,
     args::{AnswerFormat, LessonCommand, Overrides},
+    command_error,
     input::{SceneInput, shown},
-    output, trouble,
+    output,
 };
 use crate::{
     diagnostic::{Diagnostic, Report, visible_line},
@@ -17,7 +18,7 @@ use crate::{
 };
 
 /// Judges the scene and prints each condition. The exit status is 1 if a condition does not hold.
-pub fn run(LessonCommand::Check(args): &LessonCommand) -> Result<Status, Trouble> {
+pub fn run(LessonCommand::Check(args): &LessonCommand) -> Result<Status, CommandError> {
     let (lesson, start_input, start) = read(&args.lesson)?;
     let input = SceneInput::read(&args.scene, &args.overrides)?;
     let scene = input.scene()?;
@@ -54,14 +55,14 @@ pub fn run(LessonCommand::Check(args): &LessonCommand) -> Result<Status, Trouble
     Ok(if held == judged.len() {
         Status::Done
     } else {
-        Status::SceneErrors
+        Status::Negative
     })
 }
 
 /// Reads a lesson and its scene, which is in a file of the same name with the ending .scn. Warns of
 /// paths that are probably misspelt. If the lesson or the scene has mistakes, prints the mistakes
 /// and returns an error.
-pub fn read(path: &Path) -> Result<(Lesson, SceneInput, Scene), Trouble> {
+pub fn read(path: &Path) -> Result<(Lesson, SceneInput, Scene), CommandError> {
     let own = Overrides { sets: Vec::new() };
     let text = SceneInput::read(path, &own)?.sources;
     let report = |problems: &[Diagnostic]| {
@@ -72,13 +73,13 @@ pub fn read(path: &Path) -> Result<(Lesson, SceneInput, Scene), Trouble> {
     };
     let lesson = parse(&text.file).map_err(|problems| {
         report(&problems);
-        trouble(format!("{} is no lesson that can be judged", shown(path)))
+        command_error(format!("{} is no lesson that can be judged", shown(path)))
     })?;
     let beside = path.with_extension("scn");
     let input = SceneInput::read(&beside, &own)?;
     let start = input.scene().map_err(|_| {
         let (scene, lesson) = (shown(&beside), shown(path));
-        trouble(format!(
+        command_error(format!(
             "{scene}, the scene of the lesson {lesson}, has errors"
         ))
     })?;

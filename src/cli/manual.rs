@@ -7,10 +7,10 @@ use clap::{Command, CommandFactory};
 use clap_complete::Shell;
 use clap_mangen::Man;
 
-use super::{Status, Trouble, args::Args, output, trouble};
+use super::{CommandError, Status, args::Args, command_error, output};
 
 /// Prints the completion script for a shell.
-pub fn completions(shell: Shell) -> Result<Status, Trouble> {
+pub fn completions(shell: Shell) -> Result<Status, CommandError> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Args::command(), "pinhole", &mut script);
     output::to_programs(&script)?;
@@ -18,9 +18,9 @@ pub fn completions(shell: Shell) -> Result<Status, Trouble> {
 }
 
 /// Prints the manual page of `pinhole`, with a section for each command.
-pub fn man() -> Result<Status, Trouble> {
+pub fn man() -> Result<Status, CommandError> {
     let mut page = Vec::new();
-    write(&mut page).map_err(|error| trouble(format!("cannot write the manual: {error}")))?;
+    write(&mut page).map_err(|error| command_error(format!("cannot write the manual: {error}")))?;
     output::to_programs(&page)?;
     Ok(Status::Done)
 }

@@ -8,12 +8,12 @@ use std::{
 };
 
 use super::{
-    Status, Trouble,
+    CommandError, Status,
     args::MergeArgs,
+    command_error,
     input::{self, shown, unreadable},
     interrupt::Interrupt,
     picture::{FileFormat, PictureOutput},
-    trouble,
 };
 use crate::{
     area::Area,
@@ -36,10 +36,10 @@ struct PartFile {
 }
 
 /// Puts parts together and writes the whole picture.
-pub fn run(args: &MergeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+pub fn run(args: &MergeArgs, interrupt: &Interrupt) -> Result<Status, CommandError> {
     let output = PictureOutput::of(&args.output, Some(&args.output))?;
     let PictureOutput::File(path, format, _) = &output else {
-        return Err(trouble(
+        return Err(command_error(
             "merge writes a file: say with `-o FILE` where it goes",
         ));
     };
@@ -49,7 +49,7 @@ pub fn run(args: &MergeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         .find(|part| input::is_same_file(part, path))
     {
         let part = shown(part);
-        return Err(trouble(format!(
+        return Err(command_error(format!(
             "{part} is one of the parts: say with `-o FILE` where the whole picture goes"
         )));
     }
@@ -62,11 +62,11 @@ pub fn run(args: &MergeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_alike(&parts, path, *format)?;
     check_overlaps(&parts)?;
     let Some(first) = parts.first() else {
-        return Err(trouble("there are no parts"));
+        return Err(command_error("there are no parts"));
     };
     let whole = Area::whole(first.part.size[0], first.part.size[1]);
     if let Some(gap) = gap(&parts, whole) {
-        return Err(trouble(format!(
+        return Err(command_error(format!(
             "no part has the pixels {gap} of the whole picture, X,Y,W,H, which has {} × {} pixels",
             whole.width, whole.height
         )));
@@ -139,28 +139,28 @@ impl PartFile {
 }
 
 /// Rejects parts of different pictures or formats, and an output of another format.
-fn check_alike(parts: &[PartFile], output: &Path, format: FileFormat) -> Result<(), Trouble> {
+fn check_alike(parts: &[PartFile], output: &Path, format: FileFormat) -> Result<(), CommandError> {
     for (one, other) in parts.iter().zip(parts.iter().skip(1)) {
         let [a, b] = [one, other].map(|part| shown(&part.path));
         if one.format != other.format {
-            return Err(trouble(format!(
+            return Err(command_error(format!(
                 "{a} and {b} are files of different formats"
             )));
         }
         if one.part.size != other.part.size {
             let [[w, h], [v, g]] = [one, other].map(|part| part.part.size);
-            return Err(trouble(format!(
+            return Err(command_error(format!(
                 "{a} is a part of a picture of {w} × {h} pixels, and {b} of one of {v} × {g}"
             )));
         }
         if one.part.digest != other.part.digest {
-            return Err(trouble(format!(
+            return Err(command_error(format!(
                 "{a} and {b} are of different scenes: their texts, their `--set` arguments or the versions of Pinhole differ"
             )));
         }
     }
     match parts.first() {
-        Some(part) if part.format != format => Err(trouble(format!(
+        Some(part) if part.format != format => Err(command_error(format!(
             "{} has another format than the parts: give it the ending of {}",
             shown(output),
             shown(&part.path)
@@ -171,12 +171,12 @@ fn check_alike(parts: &[PartFile], output: &Path, format: FileFormat) -> Result<
 
 /// Rejects parts that do not lie in the whole picture, or have pixels in common. `parts` are sorted
 /// by their first rows.
-fn check_overlaps(parts: &[PartFile]) -> Result<(), Trouble> {
+fn check_overlaps(parts: &[PartFile]) -> Result<(), CommandError> {
     for (at, one) in parts.iter().enumerate() {
         let [width, height] = one.part.size;
         if one.part.area.pixels() == 0 || !one.part.area.lies_in(Area::whole(width, height)) {
             let (path, area) = (shown(&one.path), one.part.area);
-            return Err(trouble(format!(
+            return Err(command_error(format!(
                 "{path} says that it is the part {area} of a picture of {width} × {height} pixels"
             )));
         }
@@ -188,7 +188,7 @@ fn check_overlaps(parts: &[PartFile]) -> Result<(), Trouble> {
             if one.part.area.meets(other.part.area) {
                 let common = one.part.area.common(other.part.area);
                 let [a, b] = [one, other].map(|part| shown(&part.path));
-                return Err(trouble(format!(
+                return Err(command_error(format!(
                     "{a} and {b} overlap: both have the pixels {common}, X,Y,W,H"
                 )));
             }
@@ -275,7 +275,7 @@ impl<'a, P: Pixel> MergedRows<'a, P> {
 
     /// Returns the next rows, or `None` after the last row. If a part cannot be read, returns an
     /// error, and stores its message in `failed`.
-    fn band(&mut self, failed: &mut Option<Trouble>) -> Option<io::Result<Film<P>>> {
+    fn band(&mut self, failed: &mut Option<CommandError>) -> Option<io::Result<Film<P>>> {
         let rows = ROWS.min(self.whole.height - self.y);
         if rows == 0 {
             return None;
@@ -287,9 +287,9 @@ impl<'a, P: Pixel> MergedRows<'a, P> {
         }))
     }
 
-    fn read(&mut self, rows: u32) -> Result<Film<P>, Trouble> {
+    fn read(&mut self, rows: u32) -> Result<Film<P>, CommandError> {
         let film = Film::new(self.whole.width, rows);
-        let mut film = film.map_err(|error| trouble(error.to_string()))?;
+        let mut film = film.map_err(|error| command_error(error.to_string()))?;
         for row in film
             .pixels_mut()
             .chunks_exact_mut(self.whole.width as usize)

@@ -62,7 +62,7 @@ pub fn run() -> ExitCode {
     let interrupt = Interrupt::default();
     match interrupt.listen() {
         Ok(()) => run_with(env::args_os(), &interrupt).into(),
-        Err(trouble) => status_of(Err(trouble)).into(),
+        Err(error) => status_of(Err(error)).into(),
     }
 }
 
@@ -78,7 +78,7 @@ pub fn run_with(args: impl IntoIterator<Item = OsString>, interrupt: &Interrupt)
     status as u8
 }
 
-fn command(command: Command, interrupt: &Interrupt) -> Result<Status, Trouble> {
+fn command(command: Command, interrupt: &Interrupt) -> Result<Status, CommandError> {
     if let Some(wanted) = command.threads() {
         threads::limit(wanted);
     }
@@ -119,14 +119,14 @@ fn visible_answer(args: Vec<OsString>) -> Option<clap::Error> {
 /// status.
 fn print_answer(answer: &clap::Error) -> Status {
     let status = if answer.use_stderr() {
-        Status::Trouble
+        Status::Failed
     } else {
         Status::Done
     };
     match answer.print() {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             output::error(&format!("cannot write to standard output: {error}"));
-            Status::Trouble
+            Status::Failed
         }
         _ => status,
     }
@@ -137,7 +137,7 @@ fn print_answer(answer: &clap::Error) -> Status {
 fn each(
     scenes: &[PathBuf],
     interrupt: &Interrupt,
-    one: impl Fn(&Path) -> Result<Status, Trouble>,
+    one: impl Fn(&Path) -> Result<Status, CommandError>,
 ) -> Status {
     let mut status = Status::Done;
     for path in scenes {
@@ -157,9 +157,10 @@ enum Status {
     /// The command ran, but with a negative result: the scene has errors or does not solve a
     /// lesson, the pictures differ, the layout would change, or an editor disconnected without
     /// sending `exit`.
-    SceneErrors = 1,
-    /// Wrong arguments, a file that cannot be read or written, or too little memory.
-    Trouble = 2,
+    Negative = 1,
+    /// The command failed: wrong arguments, a file that cannot be read or written, or too little
+    /// memory.
+    Failed = 2,
     /// The command was ended by Ctrl-C.
     Interrupted = 130,
 }
@@ -172,21 +173,21 @@ impl From<Status> for ExitCode {
 
 /// Returns the exit status of a command that has ended. Prints its error message, except for errors
 /// of the scene, which were already printed, and for Ctrl-C.
-fn status_of(done: Result<Status, Trouble>) -> Status {
+fn status_of(done: Result<Status, CommandError>) -> Status {
     match done {
         Ok(status) => status,
-        Err(Trouble::SceneErrors) => Status::SceneErrors,
-        Err(Trouble::Interrupted) => Status::Interrupted,
-        Err(trouble) => {
-            output::error(&trouble);
-            Status::Trouble
+        Err(CommandError::SceneErrors) => Status::Negative,
+        Err(CommandError::Interrupted) => Status::Interrupted,
+        Err(error) => {
+            output::error(&error);
+            Status::Failed
         }
     }
 }
 
 /// Reason why a command ended early.
 #[derive(Debug, thiserror::Error)]
-enum Trouble {
+enum CommandError {
     /// An error, with a message for people.
     #[error("{0}")]
     Message(String),
@@ -199,15 +200,15 @@ enum Trouble {
 }
 
 /// Makes an error with a message for people.
-fn trouble(message: impl Into<String>) -> Trouble {
-    Trouble::Message(message.into())
+fn command_error(message: impl Into<String>) -> CommandError {
+    CommandError::Message(message.into())
 }
 
-impl From<RenderError> for Trouble {
+impl From<RenderError> for CommandError {
     fn from(error: RenderError) -> Self {
         match error {
             RenderError::Cancelled => Self::Interrupted,
-            error => trouble(error.to_string()),
+            error => command_error(error.to_string()),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! `new`: writes a new file with a minimal scene that shows something.
 
 use super::{
-    Status, Trouble,
+    CommandError, Status,
     args::NewArgs,
     input::{is_standard, unwritable},
     interrupt::Interrupt,
@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// Writes the minimal scene to a new file, or to standard output for `-`. Fails if the file exists.
-pub fn run(args: &NewArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+pub fn run(args: &NewArgs, interrupt: &Interrupt) -> Result<Status, CommandError> {
     if is_standard(&args.file) {
         output::to_programs(scene::SMALLEST.as_bytes())?;
         return Ok(Status::Done);

@@ -8,12 +8,12 @@ use std::{
 
 use terminal_size::{Width, terminal_size_of};
 
-use super::{Trouble, trouble};
+use super::{CommandError, command_error};
 use crate::diagnostic::{Drawing, Style, visible, visible_line};
 
 /// Writes a text to standard output. On a terminal, control characters are made visible, so that a
 /// text from a scene cannot control the terminal.
-pub fn to_programs(text: &[u8]) -> Result<(), Trouble> {
+pub fn to_programs(text: &[u8]) -> Result<(), CommandError> {
     if io::stdout().is_terminal() {
         page(&visible(&String::from_utf8_lossy(text)))
     } else {
@@ -25,7 +25,7 @@ pub fn to_programs(text: &[u8]) -> Result<(), Trouble> {
 /// memory. On a terminal, control characters are made visible.
 pub fn stream_to_programs(
     write_to: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<(), Trouble> {
+) -> Result<(), CommandError> {
     if io::stdout().is_terminal() {
         let mut text = Vec::new();
         return write_to(&mut text)
@@ -40,18 +40,18 @@ pub fn stream_to_programs(
 
 /// Writes a text to standard output. The text must already be formatted for a terminal and contain
 /// no control characters from a scene.
-pub fn page(text: &str) -> Result<(), Trouble> {
+pub fn page(text: &str) -> Result<(), CommandError> {
     write(text.as_bytes())
 }
 
-fn write(bytes: &[u8]) -> Result<(), Trouble> {
+fn write(bytes: &[u8]) -> Result<(), CommandError> {
     let mut out = StandardOutput::new();
     let written = out.write_all(bytes).and_then(|()| out.flush());
     written.map_err(stdout_error)
 }
 
-fn stdout_error(error: io::Error) -> Trouble {
-    trouble(format!("cannot write to standard output: {error}"))
+fn stdout_error(error: io::Error) -> CommandError {
+    command_error(format!("cannot write to standard output: {error}"))
 }
 
 /// Standard output. If the reading program has closed the pipe, as `head` does, further output is
@@ -88,16 +88,16 @@ pub fn to_people(text: &str) {
 
 /// Writes a command's result to standard error, wrapped to the width of the terminal. If the
 /// reading program has closed the pipe, the rest is dropped without an error.
-pub fn answer(text: &str) -> Result<(), Trouble> {
+pub fn answer(text: &str) -> Result<(), CommandError> {
     let columns = terminal_size_of(io::stderr()).filter(|_| is_watched());
     let text = match columns {
         Some((Width(columns), _)) => wrapped(text, columns.into()).into(),
         None => Cow::Borrowed(text),
     };
     match io::stderr().lock().write_all(text.as_bytes()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(trouble(format!("cannot write to standard error: {error}")))
-        }
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(command_error(format!(
+            "cannot write to standard error: {error}"
+        ))),
         _ => Ok(()),
     }
 }

@@ -7,9 +7,9 @@ use std::{
 };
 
 use super::{
-    Trouble,
+    CommandError, command_error,
     input::{self, shown},
-    output, progress, trouble,
+    output, progress,
 };
 use crate::{
     area::Area,
@@ -176,12 +176,12 @@ impl PictureOutput {
     /// Returns the output that the user named. If there is none, returns the PNG file beside the
     /// scene. Returns an error if the file's extension is not that of a picture, or if the scene
     /// comes from standard input and no output is named.
-    pub fn of(scene: &Path, output: Option<&Path>) -> Result<Self, Trouble> {
+    pub fn of(scene: &Path, output: Option<&Path>) -> Result<Self, CommandError> {
         let path = match output {
             Some(path) if input::is_standard(path) => return Ok(Self::Standard),
             Some(path) => path,
             None if input::is_standard(scene) => {
-                return Err(trouble(
+                return Err(command_error(
                     "the scene comes from standard input: say with `-o FILE` where the picture goes",
                 ));
             }
@@ -196,9 +196,9 @@ impl PictureOutput {
 
     /// Checks, before rendering, that the picture can probably be written. Rejects an output that
     /// would replace the scene.
-    pub fn check(&self, scene: &Path) -> Result<(), Trouble> {
+    pub fn check(&self, scene: &Path) -> Result<(), CommandError> {
         match self {
-            Self::Standard if io::stdout().is_terminal() => Err(trouble(
+            Self::Standard if io::stdout().is_terminal() => Err(command_error(
                 "standard output is a terminal, which shows no pictures: use `-o FILE`, or a pipe",
             )),
             Self::Standard => Ok(()),
@@ -221,7 +221,7 @@ impl PictureOutput {
         recipe: &Recipe,
         path_of_scene: &Path,
         cancel: &AtomicBool,
-    ) -> Result<String, Trouble> {
+    ) -> Result<String, CommandError> {
         let whole = Area::whole(scene.image.width, scene.image.height);
         match self {
             Self::File(_, FileFormat::Exr, _) => {
@@ -248,7 +248,7 @@ impl PictureOutput {
         path_of_scene: &Path,
         cancel: &AtomicBool,
         write: impl FnOnce(&mut dyn Sink, &mut Bands<P>) -> io::Result<()>,
-    ) -> Result<String, Trouble> {
+    ) -> Result<String, CommandError> {
         let mut certificate = Certificate::default();
         let mut failed = None;
         let written = with_progress(scene, part, cancel, |sampling, control| {
@@ -284,7 +284,7 @@ impl PictureOutput {
         rendered: &Rendered,
         recipe: &Recipe,
         cancel: &AtomicBool,
-    ) -> Result<String, Trouble> {
+    ) -> Result<String, CommandError> {
         let film = rendered.film();
         let whole = Area::whole(film.width(), film.height());
         let mut certificate = Certificate::default();
@@ -316,7 +316,7 @@ impl PictureOutput {
         scene: &Path,
         cancel: &AtomicBool,
         write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), CommandError> {
         let written = match self {
             Self::Standard => files::write_stream(output::StandardOutput::new(), cancel, |out| {
                 write(&mut Unseekable(out))
@@ -328,7 +328,7 @@ impl PictureOutput {
                 files::write(path, path_choice.purpose(path), cancel, write)
             }
         };
-        written.map_err(|error| trouble(format!("cannot write to {self}: {error}")))
+        written.map_err(|error| command_error(format!("cannot write to {self}: {error}")))
     }
 
     /// Returns a warning if the scene is too long to be stored in the PNG; otherwise an empty text.
@@ -367,9 +367,9 @@ impl io::Seek for Unseekable<'_> {
 }
 
 /// Rejects a picture that would overwrite its scene.
-fn check_is_not(path: &Path, scene: &Path) -> Result<(), Trouble> {
+fn check_is_not(path: &Path, scene: &Path) -> Result<(), CommandError> {
     if input::is_same_file(path, scene) {
-        return Err(trouble(format!(
+        return Err(command_error(format!(
             "{} is the scene itself: say with `-o FILE` where the picture goes",
             shown(path)
         )));
@@ -388,14 +388,14 @@ impl std::fmt::Display for PictureOutput {
 
 /// Returns the format that belongs to a file's extension, or an error if it is neither `.png` nor
 /// `.exr`.
-fn format(path: &Path) -> Result<FileFormat, Trouble> {
+fn format(path: &Path) -> Result<FileFormat, CommandError> {
     let name = path.to_string_lossy().to_ascii_lowercase();
     if name.ends_with(".png") {
         Ok(FileFormat::Png)
     } else if name.ends_with(".exr") {
         Ok(FileFormat::Exr)
     } else {
-        Err(trouble(format!(
+        Err(command_error(format!(
             "the ending of {} stands for no format: a picture's file ends in .png or .exr",
             shown(path)
         )))

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::{
-    Status, Trouble,
+    CommandError, Status,
     args::{AnswerFormat, ProbeArgs},
     input::SceneInput,
     output,
@@ -11,7 +11,7 @@ use super::{
 use crate::probe;
 
 /// Prints the surfaces that the ray through a point of the picture hits.
-pub fn run(args: &ProbeArgs) -> Result<Status, Trouble> {
+pub fn run(args: &ProbeArgs) -> Result<Status, CommandError> {
     let input = SceneInput::read(&args.scene, &args.overrides)?;
     let scene = input.scene()?;
     let probe = probe::probe(&scene, DVec2::new(args.x, args.y));

@@ -4,25 +4,25 @@
 use std::time::Instant;
 
 use super::{
-    Status, Trouble,
+    CommandError, Status,
     args::RenderArgs,
+    command_error,
     frames::{self, FramePattern},
     input::{SceneInput, shown},
     interrupt::Interrupt,
     output,
     picture::PictureOutput,
     sweep::Sweep,
-    trouble,
 };
 use crate::{area::Area, film::Recipe, render::RenderError, scene::Scene, tracer::World};
 
 /// Renders a scene and writes the picture, or the pictures of a sweep.
-pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, CommandError> {
     if let Some(sweep) = &args.sweep {
         return render_sweep(args, sweep, interrupt);
     }
     if args.shard.is_some() && args.output.is_none() {
-        return Err(trouble(
+        return Err(command_error(
             "a shard is one of several files: say with `-o FILE` where it goes",
         ));
     }
@@ -46,7 +46,7 @@ fn render(
     recipe: &Recipe,
     output: &PictureOutput,
     interrupt: &Interrupt,
-) -> Result<(), Trouble> {
+) -> Result<(), CommandError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let part = recipe.crop.unwrap_or(whole);
     let cancel = interrupt.watch();
@@ -54,7 +54,7 @@ fn render(
     let world = World::new_unless(scene, cancel).map_err(RenderError::from)?;
     let note = output
         .render(scene, &world, part, recipe, &args.scene, cancel)
-        .map_err(|trouble| interrupt.or(trouble))?;
+        .map_err(|error| interrupt.or(error))?;
     output::to_people(&output.note_of_length(recipe));
     output::to_people(&note);
     if output::is_watched() {
@@ -69,17 +69,17 @@ fn render(
 
 /// Returns what the picture's file stores: the scene, its overrides and the rendered part of the
 /// picture.
-fn recipe(args: &RenderArgs, input: SceneInput, scene: &Scene) -> Result<Recipe, Trouble> {
+fn recipe(args: &RenderArgs, input: SceneInput, scene: &Scene) -> Result<Recipe, CommandError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let crop = crop(args, &input, whole)?;
     Ok(input.into_recipe(crop, whole))
 }
 
 /// Returns the part of the picture to render, or `None` for the whole picture.
-fn crop(args: &RenderArgs, input: &SceneInput, whole: Area) -> Result<Option<Area>, Trouble> {
+fn crop(args: &RenderArgs, input: &SceneInput, whole: Area) -> Result<Option<Area>, CommandError> {
     if let Some(shard) = args.shard {
         let band = shard.band(whole).ok_or_else(|| {
-            trouble(format!(
+            command_error(format!(
                 "{shard} is not one of at most {} shards: the picture has so many rows",
                 whole.height
             ))
@@ -95,7 +95,7 @@ fn crop(args: &RenderArgs, input: &SceneInput, whole: Area) -> Result<Option<Are
                 Some(_) => String::new(),
                 None => format!(", which {} carries,", shown(&args.scene)),
             };
-            Err(trouble(format!(
+            Err(command_error(format!(
                 "the crop {part}{carried} does not lie within the picture, which has {} × {} pixels",
                 whole.width, whole.height
             )))
@@ -109,7 +109,7 @@ fn render_sweep(
     args: &RenderArgs,
     sweep: &Sweep,
     interrupt: &Interrupt,
-) -> Result<Status, Trouble> {
+) -> Result<Status, CommandError> {
     let pattern = FramePattern::of(args.output.as_deref())?;
     let input = SceneInput::read(&args.scene, &args.overrides)?;
     let outputs = (0..sweep.count()).map(|i| {
@@ -117,7 +117,7 @@ fn render_sweep(
         output.check(&args.scene)?;
         Ok(output)
     });
-    let outputs: Vec<PictureOutput> = outputs.collect::<Result<_, Trouble>>()?;
+    let outputs: Vec<PictureOutput> = outputs.collect::<Result<_, CommandError>>()?;
     for (step, output) in input.steps(sweep)?.into_iter().zip(outputs) {
         let input = input.with_set(&step.set);
         let scene = input.scene_without_warnings()?;

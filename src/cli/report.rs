@@ -1,7 +1,7 @@
 //! `report`: reports how accurate and how fast Pinhole is.
 
 use super::{
-    Status, Trouble,
+    CommandError, Status,
     args::{AnswerFormat, ReportArgs},
     interrupt::Interrupt,
     output, progress,
@@ -13,7 +13,7 @@ use crate::{render::RenderError, report::numerics};
 const INPUTS: u64 = 10_000;
 
 /// Prints or writes the report that the arguments select.
-pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, CommandError> {
     if args.numerics {
         return numerics(args, interrupt);
     }
@@ -22,7 +22,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
 
 /// Tests the arithmetic of the renderer in hard cases, and prints how often it gave a wrong answer,
 /// such as a wrong visible object. After Ctrl-C, only the inputs tested so far are counted.
-fn numerics(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+fn numerics(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, CommandError> {
     let cancel = interrupt.watch();
     let inputs = args.inputs.unwrap_or(INPUTS);
     let total = inputs.saturating_mul(numerics::cases().count() as u64);

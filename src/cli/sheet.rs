@@ -9,13 +9,13 @@ use std::{
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 
 use super::{
-    Status, Trouble,
+    CommandError, Status,
     args::SheetArgs,
+    command_error,
     input::{SceneInput, check_standard, is_standard, shown, unwritable},
     interrupt::Interrupt,
     output,
     picture::{PictureOutput, render_part},
-    trouble,
 };
 use crate::{
     area::Area,
@@ -46,7 +46,7 @@ const LINE: u32 = 22;
 const REGULAR: FontWeight = FontWeight::Regular;
 
 /// Renders the scenes and writes the contact sheet.
-pub fn run(args: &SheetArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+pub fn run(args: &SheetArgs, interrupt: &Interrupt) -> Result<Status, CommandError> {
     check_standard(&args.scenes)?;
     check_output(args)?;
     let mut status = Status::Done;
@@ -54,8 +54,8 @@ pub fn run(args: &SheetArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     for path in &args.scenes {
         match scenes_of(path, args) {
             Ok(found) => scenes.extend(found),
-            Err(Trouble::SceneErrors) => status = Status::SceneErrors,
-            Err(trouble) => return Err(trouble),
+            Err(CommandError::SceneErrors) => status = Status::Negative,
+            Err(error) => return Err(error),
         }
     }
     if status != Status::Done {
@@ -81,14 +81,14 @@ pub fn run(args: &SheetArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
 }
 
 /// Rejects an output that is not a PNG, is one of the scenes, or cannot be written.
-fn check_output(args: &SheetArgs) -> Result<(), Trouble> {
+fn check_output(args: &SheetArgs) -> Result<(), CommandError> {
     let path = &args.output;
     let is_png = path
         .extension()
         .is_some_and(|it| it.eq_ignore_ascii_case("png"));
     if !is_png && !is_standard(path) {
         let path = shown(path);
-        return Err(trouble(format!(
+        return Err(command_error(format!(
             "a sheet is a PNG: {path} should end in .png"
         )));
     }
@@ -98,7 +98,7 @@ fn check_output(args: &SheetArgs) -> Result<(), Trouble> {
 
 /// Returns the scene of a file with its caption. With `--sweep`, returns a scene with its caption
 /// for each value.
-fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Vec<(Scene, String)>, Trouble> {
+fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Vec<(Scene, String)>, CommandError> {
     let input = SceneInput::read(path, &args.overrides)?;
     let Some(sweep) = &args.sweep else {
         return Ok(vec![(input.scene()?, name(path, args))]);

@@ -12,7 +12,7 @@ use std::{
 
 use terminal_size::{Height, Width, terminal_size_of};
 
-use super::{Trouble, output, trouble};
+use super::{CommandError, command_error, output};
 use crate::{area::Area, color::linear_to_srgb, film::Film};
 
 /// The terminal, reached through standard error, in which `watch` shows pictures and messages.
@@ -46,14 +46,14 @@ impl Screen {
 
     /// Makes a screen that shows pictures and messages. Fails unless standard error is a terminal
     /// with colours.
-    pub fn of_pictures() -> Result<Self, Trouble> {
+    pub fn of_pictures() -> Result<Self, CommandError> {
         if !io::stderr().is_terminal() {
-            return Err(trouble(
+            return Err(command_error(
                 "`--show` draws in a terminal, and standard error is none",
             ));
         }
         if !output::has_color() {
-            return Err(trouble(
+            return Err(command_error(
                 "`--show` draws in colours, and the terminal has none, by `TERM`, `NO_COLOR` or `CLICOLOR`",
             ));
         }

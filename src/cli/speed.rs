@@ -12,11 +12,12 @@ use std::{
 use serde_json::json;
 
 use super::{
-    Status, Trouble,
+    CommandError, Status,
     args::{AnswerFormat, ReportArgs, methods},
+    command_error,
     input::{SceneInput, check_standard, is_standard, not_written},
     interrupt::Interrupt,
-    output, progress, trouble,
+    output, progress,
 };
 use crate::{
     files::OutputFolder,
@@ -45,7 +46,7 @@ const FILES: [&str; 5] = [
 
 /// Measures each scene in turn and reports the results. After Ctrl-C, the measurements made so far
 /// are reported.
-pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, CommandError> {
     check_standard(&args.scenes)?;
     let request = request(args);
     check_methods(&request)?;
@@ -70,7 +71,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
                 };
                 subjects.push((subject, scene));
             }
-            Err(_) => status = Status::SceneErrors,
+            Err(_) => status = Status::Negative,
         }
     }
     if status != Status::Done {
@@ -148,10 +149,10 @@ fn errors(asked: &[f64]) -> Vec<f64> {
 }
 
 /// Rejects `--samples` if the exact method, which uses no samples, is the only chosen method.
-fn check_methods(request: &Request) -> Result<(), Trouble> {
+fn check_methods(request: &Request) -> Result<(), CommandError> {
     let is_exact = |method: &Method| *method == Method::Exact;
     if !request.samples.is_empty() && request.methods.iter().all(is_exact) {
-        return Err(trouble(
+        return Err(command_error(
             "`--samples` is for methods that take samples, and `--methods` names `exact` alone, which takes none",
         ));
     }
@@ -159,12 +160,12 @@ fn check_methods(request: &Request) -> Result<(), Trouble> {
 }
 
 /// Rejects more than 2^53 samples in a picture, the limit of the scene language.
-fn check_samples(scene: &Scene, request: &Request) -> Result<(), Trouble> {
+fn check_samples(scene: &Scene, request: &Request) -> Result<(), CommandError> {
     let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
     let most = request.samples.iter().copied().max().unwrap_or(0);
     match most.checked_mul(pixels) {
         Some(total) if total <= 1 << 53 => Ok(()),
-        _ => Err(trouble(format!(
+        _ => Err(command_error(format!(
             "{most} samples in each of {pixels} pixels are more than 2^53"
         ))),
     }
@@ -176,7 +177,7 @@ fn measure(
     scene: &Scene,
     request: &Request,
     interrupt: &Interrupt,
-) -> Result<Option<Measurement>, Trouble> {
+) -> Result<Option<Measurement>, CommandError> {
     let control = Control {
         threads: None,
         progress: &|_| {},
@@ -214,7 +215,7 @@ fn files(folder: &str) -> [String; 5] {
 }
 
 /// Returns the contents of a report's files, in the order of [`FILES`].
-fn texts(measured: &Measurement) -> Result<[String; 5], Trouble> {
+fn texts(measured: &Measurement) -> Result<[String; 5], CommandError> {
     Ok([
         to_csv(measured).map_err(report_error)?,
         format!("{:#}\n", to_json(measured)),
@@ -224,12 +225,12 @@ fn texts(measured: &Measurement) -> Result<[String; 5], Trouble> {
     ])
 }
 
-fn page(measured: &[Measurement]) -> Result<String, Trouble> {
+fn page(measured: &[Measurement]) -> Result<String, CommandError> {
     speed::page(measured).map_err(report_error)
 }
 
-fn report_error(error: io::Error) -> Trouble {
-    trouble(format!("cannot make the report: {error}"))
+fn report_error(error: io::Error) -> CommandError {
+    command_error(format!("cannot make the report: {error}"))
 }
 
 /// Returns the name of a scene's subfolder: the name of its file without extension, with a number

@@ -9,16 +9,17 @@ use std::{
 use tokio::sync::Notify;
 
 use super::{
-    Status, Trouble,
+    CommandError, Status,
     args::StudioArgs,
+    command_error,
     input::{self, is_standard, shown},
     interrupt::Interrupt,
-    lesson, output, trouble, watch,
+    lesson, output, watch,
 };
 use crate::studio::{Host, LessonFile, SceneFile};
 
 /// Serves the page until Ctrl-C is pressed.
-pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, CommandError> {
     let file = file(args)?;
     let name = args
         .scene
@@ -33,7 +34,7 @@ pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         let port = args
             .port
             .map_or(String::new(), |port| format!(" at port {port}"));
-        trouble(format!("cannot serve a page{port}: {error}"))
+        command_error(format!("cannot serve a page{port}: {error}"))
     })?;
     let [address, address_once] = host.addresses();
     let end = Arc::new(Notify::new());
@@ -46,26 +47,26 @@ pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         output::warning(&"no browser could be started: open the address in one");
     }
     host.serve(end.notified())
-        .map_err(|error| trouble(format!("cannot serve a page: {error}")))?;
+        .map_err(|error| command_error(format!("cannot serve a page: {error}")))?;
     Ok(Status::Interrupted)
 }
 
 /// Opens the scene's file. If the user named none, makes a new scene, which will be saved in the
 /// current folder. Returns an error if the file cannot be read, or is standard input.
-fn file(args: &StudioArgs) -> Result<SceneFile, Trouble> {
+fn file(args: &StudioArgs) -> Result<SceneFile, CommandError> {
     let Some(scene) = &args.scene else {
         let folder = env::current_dir()
-            .map_err(|error| trouble(format!("there is no current folder: {error}")))?;
+            .map_err(|error| command_error(format!("there is no current folder: {error}")))?;
         return Ok(SceneFile::new(folder, input::bytes));
     };
     if is_standard(scene) {
         let message = "standard input cannot be edited: it is read once; give a file";
-        return Err(trouble(message));
+        return Err(command_error(message));
     }
     watch::check_scene(scene)?;
     input::name_copies(scene);
     SceneFile::open(scene, input::bytes)
-        .map_err(|error| trouble(format!("cannot read {}: {error}", shown(scene))))
+        .map_err(|error| command_error(format!("cannot read {}: {error}", shown(scene))))
 }
 
 /// Starts the system's program that opens an address in a browser. Returns whether it could be

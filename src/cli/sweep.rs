@@ -3,7 +3,7 @@
 
 use std::str::FromStr;
 
-use super::{Trouble, trouble};
+use super::{CommandError, command_error};
 use crate::{
     numbers::{short, short_vector},
     scene::analyze,
@@ -99,7 +99,7 @@ impl Sweep {
     ///
     /// Returns an error if there are no values between the first and the last one, for example
     /// because the values are words or colours.
-    pub fn steps(&self, sources: &Sources) -> Result<Vec<SweepStep>, Trouble> {
+    pub fn steps(&self, sources: &Sources) -> Result<Vec<SweepStep>, CommandError> {
         let Self {
             from, to, count, ..
         } = self;
@@ -140,9 +140,9 @@ impl Sweep {
         })
     }
 
-    fn nothing_between(&self) -> Trouble {
+    fn nothing_between(&self) -> CommandError {
         let (from, to) = (&self.from, &self.to);
-        trouble(format!(
+        command_error(format!(
             "--sweep finds nothing between `{from}` and `{to}`: it goes between two numbers, angles or vectors with a finite difference"
         ))
     }

@@ -12,14 +12,14 @@ use std::{
 };
 
 use super::{
-    Status, Trouble,
+    CommandError, Status,
     args::WatchArgs,
+    command_error,
     input::{self, SceneInput, shown},
     interrupt::Interrupt,
     output,
     picture::{PictureOutput, render_part},
     show::Screen,
-    trouble,
 };
 use crate::{
     area::Area,
@@ -31,7 +31,7 @@ use crate::{
 };
 
 /// Renders the scene at the start and after every save, until Ctrl-C is pressed.
-pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, CommandError> {
     let start = Instant::now();
     let output = output(args)?;
     check_scene(&args.scene)?;
@@ -43,7 +43,7 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     };
     let scene = shown(&args.scene);
     let latest = preview::watch(&args.scene, input::bytes)
-        .map_err(|error| trouble(format!("cannot watch the folder of {scene}: {error}")))?;
+        .map_err(|error| command_error(format!("cannot watch the folder of {scene}: {error}")))?;
     let ended = Arc::clone(&latest);
     interrupt.then(move || ended.end());
     screen.print(&format!("watching {scene}; Ctrl-C ends it\n"));
@@ -54,7 +54,7 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         }
         let written = content
             .bytes
-            .map_err(|error| trouble(format!("cannot read {scene}: {error}")))
+            .map_err(|error| command_error(format!("cannot read {scene}: {error}")))
             .and_then(|bytes| render_and_write(args, bytes, &output, latest.stale(), &mut screen));
         match written {
             Ok(done) => {
@@ -66,9 +66,9 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
                 let time = time(done.duration_since(since));
                 screen.print(&format!("wrote {output} {time} {what}\n"));
             }
-            Err(Trouble::SceneErrors | Trouble::Interrupted) => {}
+            Err(CommandError::SceneErrors | CommandError::Interrupted) => {}
             // An error does not end watching, since the next save may remove its cause.
-            Err(trouble) => screen.print(&output::worded_error(&trouble)),
+            Err(error) => screen.print(&output::worded_error(&error)),
         }
         is_first = false;
     }
@@ -82,14 +82,14 @@ const REFIT: Duration = Duration::from_millis(200);
 
 /// Returns the file to which the picture is written. Returns an error if the scene comes from
 /// standard input, or the picture would go to standard output.
-fn output(args: &WatchArgs) -> Result<PictureOutput, Trouble> {
+fn output(args: &WatchArgs) -> Result<PictureOutput, CommandError> {
     if input::is_standard(&args.scene) {
-        return Err(trouble(
+        return Err(command_error(
             "standard input cannot be watched: it is read once; give a file",
         ));
     }
     match PictureOutput::of(&args.scene, args.output.as_deref())? {
-        PictureOutput::Standard => Err(trouble(
+        PictureOutput::Standard => Err(command_error(
             "standard output holds one picture, and watch writes one after every save: give a file",
         )),
         file => Ok(file),
@@ -98,14 +98,14 @@ fn output(args: &WatchArgs) -> Result<PictureOutput, Trouble> {
 
 /// Checks that the scene can be read and is not a picture. The check is made only at the start,
 /// since an editor may remove the file for a moment while it saves.
-pub fn check_scene(scene: &Path) -> Result<(), Trouble> {
+pub fn check_scene(scene: &Path) -> Result<(), CommandError> {
     let bytes = input::bytes(scene).map_err(|error| input::unreadable(scene, &error))?;
     check_text(scene, &bytes)
 }
 
-fn check_text(scene: &Path, bytes: &[u8]) -> Result<(), Trouble> {
+fn check_text(scene: &Path, bytes: &[u8]) -> Result<(), CommandError> {
     if bytes.starts_with(&SIGNATURE) {
-        return Err(trouble(format!(
+        return Err(command_error(format!(
             "{} is a picture, and what is watched is a text that somebody edits: `render` takes pictures",
             shown(scene)
         )));
@@ -115,19 +115,19 @@ fn check_text(scene: &Path, bytes: &[u8]) -> Result<(), Trouble> {
 
 /// Renders the scene with the text `bytes` and writes its picture. Returns the time when it was
 /// written. When `is_stale` is set, there is a newer text, so the work stops with the error
-/// [`Trouble::Interrupted`].
+/// [`CommandError::Interrupted`].
 fn render_and_write(
     args: &WatchArgs,
     bytes: Vec<u8>,
     output: &PictureOutput,
     is_stale: &AtomicBool,
     screen: &mut Screen,
-) -> Result<Instant, Trouble> {
+) -> Result<Instant, CommandError> {
     check_text(&args.scene, &bytes)?;
     let input = SceneInput::of(&args.scene, bytes, &args.overrides);
     let reading = scene::read_unless(&input.sources, is_stale).map_err(RenderError::from)?;
     screen.print(&input.report(&reading));
-    let scene = reading.scene.ok_or(Trouble::SceneErrors)?;
+    let scene = reading.scene.ok_or(CommandError::SceneErrors)?;
     let whole = Area::whole(scene.image.width, scene.image.height);
     let recipe = input.into_recipe(None, whole);
     let world = World::new_unless(&scene, is_stale).map_err(RenderError::from)?;
@@ -143,7 +143,7 @@ fn render_and_write(
         }
     };
     if written.is_err() && is_stale.load(Ordering::SeqCst) {
-        return Err(Trouble::Interrupted);
+        return Err(CommandError::Interrupted);
     }
     let done = Instant::now();
     // The picture is shown even if it could not be written.

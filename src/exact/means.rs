@@ -14,11 +14,11 @@ impl<const N: usize> Integrator<'_, N> {
     pub(super) fn mean(&self, by_slot: &[(usize, f64)], bound: f64) -> ExactPixel<N> {
         let mut mean = [0.0; N];
         match by_slot {
-            [(slot, _)] => mean = self.colors[*slot],
+            [(color_index, _)] => mean = self.colors[*color_index],
             by_slot => {
                 let total: f64 = by_slot.iter().map(|(_, share)| share).sum();
-                for (slot, share) in by_slot {
-                    for (sum, channel) in mean.iter_mut().zip(self.colors[*slot]) {
+                for (color_index, share) in by_slot {
+                    for (sum, channel) in mean.iter_mut().zip(self.colors[*color_index]) {
                         *sum += share * channel;
                     }
                 }
@@ -38,12 +38,12 @@ impl<const N: usize> Integrator<'_, N> {
     ) -> ExactPixel<N> {
         let is_covered = candidates.iter().any(|candidate| candidate.is_whole);
         let background = (!is_covered).then(|| self.world.background());
-        let slots = candidates
+        let color_indices = candidates
             .iter()
-            .flat_map(|candidate| self.world.slots(candidate.object));
+            .flat_map(|candidate| self.world.color_indices(candidate.object));
         let (mut low, mut high) = ([f64::INFINITY; N], [f64::NEG_INFINITY; N]);
-        for slot in slots.chain(background) {
-            let color = self.colors[slot];
+        for color_index in color_indices.chain(background) {
+            let color = self.colors[color_index];
             low = array::from_fn(|i| low[i].min(color[i]));
             high = array::from_fn(|i| high[i].max(color[i]));
         }

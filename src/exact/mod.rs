@@ -232,7 +232,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
                 return ControlFlow::Break(());
             }
             match part {
-                PicturePart::OneColor { area, slot } => film.fill(area, self.colors[slot]),
+                PicturePart::OneColor { area, color_index } => {
+                    film.fill(area, self.colors[color_index])
+                }
                 PicturePart::Pixel {
                     x,
                     y,
@@ -280,11 +282,11 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let scratch = &mut Scratch::default();
         let _ = self.quartering.parts(part, scratch, &mut |part| {
             match part {
-                PicturePart::OneColor { area, slot } => show(area, &[(slot, 1.0)]),
+                PicturePart::OneColor { area, color_index } => show(area, &[(color_index, 1.0)]),
                 PicturePart::Pixel { x, y, .. } if self.work.is_exceeded() => {
-                    let slot = self.world.slot_at(x, y, DVec2::ZERO);
+                    let color_index = self.world.color_index_at(x, y, DVec2::ZERO);
                     is_exact = false;
-                    show(Area::pixel(x, y), &[(slot, 1.0)]);
+                    show(Area::pixel(x, y), &[(color_index, 1.0)]);
                 }
                 PicturePart::Pixel {
                     x, y, candidates, ..
@@ -427,7 +429,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         // `UNIT` bounds the rounding errors of the two colours' shares, and `rounding(2)` that of
         // the mean.
         let (half, bound) = (0.5 * value, 0.5 * bound + UNIT + rounding(2));
-        let [first, second] = self.world.slots(pixel.candidate.object);
+        let [first, second] = self.world.color_indices(pixel.candidate.object);
         (bound <= self.tolerance)
             .then(|| self.mean(&[(first, 0.5 + half), (second, 0.5 - half)], bound))
     }

@@ -117,7 +117,7 @@ impl<'a> Regions<'a> {
         let Some(object) = self.seen(region) else {
             return self.shares.add(self.world.background(), region.area);
         };
-        let [first, second] = self.world.slots(object);
+        let [first, second] = self.world.color_indices(object);
         if first == second {
             return self.shares.add(first, region.area);
         }
@@ -197,7 +197,7 @@ impl<'a> Regions<'a> {
     pub fn unknown(&self) -> Shares {
         let (object, _) = self.object_at(DVec2::ZERO);
         let background = [self.world.background(); 2];
-        let [first, second] = object.map_or(background, |object| self.world.slots(object));
+        let [first, second] = object.map_or(background, |object| self.world.color_indices(object));
         Shares {
             by_slot: vec![(first, 0.5), (second, 0.5)],
             bound: 1.0,
@@ -278,21 +278,25 @@ impl Shares {
     /// Adds the shares of `part`, a part of this pixel or sub-pixel. `area` is the part's area as a
     /// fraction of the whole.
     pub fn add_part(&mut self, part: &Self, area: f64) {
-        for &(slot, share) in &part.by_slot {
-            self.add(slot, area * share);
+        for &(color_index, share) in &part.by_slot {
+            self.add(color_index, area * share);
         }
         self.bound += area * part.bound;
     }
 
-    fn add(&mut self, slot: usize, area: f64) {
-        match self.by_slot.iter_mut().find(|(known, _)| *known == slot) {
+    fn add(&mut self, color_index: usize, area: f64) {
+        match self
+            .by_slot
+            .iter_mut()
+            .find(|(known, _)| *known == color_index)
+        {
             Some((_, share)) => {
                 *share += area;
                 // The sum of two shares of a colour is at most 1, so that its rounding error is at
                 // most a unit roundoff.
                 self.bound += f64::UNIT;
             }
-            None => self.by_slot.push((slot, area)),
+            None => self.by_slot.push((color_index, area)),
         }
     }
 }

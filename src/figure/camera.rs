@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     area::Area,
-    editor::viewport::beside,
+    editor::viewport::towards_observer,
     inspect::inspect_camera,
     probe::{Probe, probe},
     projection::Projection,
@@ -81,7 +81,7 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     points.extend([-view.ahead, view.right, view.top].map(|axis| view.eye + axis * arrow));
 
     // The observer is on the side of the camera from which the ray runs to the right.
-    let side = beside(&view);
+    let side = towards_observer(&view);
     let panel = [
         DVec2::new(50.0, 34.0),
         DVec2::new(WIDTH - 50.0, HEIGHT - 34.0),

@@ -173,15 +173,15 @@ fn regions(canvas: &mut Canvas, world: &World, [x, y]: [u32; 2]) {
     let step = SIDE / f64::from(ROWS);
     let mut paths = vec![String::new(); world.palette().len()];
     for j in 0..ROWS {
-        let slot = |i: u32| world.slot_at(x, y, DVec2::new(offset(i), offset(j)));
-        let row: Vec<usize> = (0..ROWS).map(slot).collect();
+        let color_index = |i: u32| world.color_index_at(x, y, DVec2::new(offset(i), offset(j)));
+        let row: Vec<usize> = (0..ROWS).map(color_index).collect();
         let mut first = 0;
         for run in row.chunk_by(|a, b| a == b) {
-            let (slot, width) = (run[0], run.len());
+            let (color_index, width) = (run[0], run.len());
             let corner = CORNER + DVec2::new(first as f64, f64::from(j)) * step;
             let [left, top, width, height] =
                 [corner.x, corner.y, width as f64 * step, step].map(length);
-            paths[slot] += &format!("M{left} {top}h{width}v{height}h-{width}z");
+            paths[color_index] += &format!("M{left} {top}h{width}v{height}h-{width}z");
             first += run.len();
         }
     }
@@ -210,18 +210,18 @@ fn name(scene: &Scene, object: Option<usize>) -> String {
 fn most_colors(scene: &Scene, world: &World) -> [u32; 2] {
     let (width, height) = (scene.image.width, scene.image.height);
     let (columns, rows) = (width.min(64), height.min(90));
-    let slot = |x: u32, y: u32| world.slot_at(x, y, DVec2::ZERO);
+    let color_index = |x: u32, y: u32| world.color_index_at(x, y, DVec2::ZERO);
     let mut best = (f64::NEG_INFINITY, [width / 2, height / 2]);
     for y in (0..rows).map(|j| (2 * j + 1) * height / (2 * rows)) {
         for i in 1..columns {
             let [mut from, mut to] = [i - 1, i].map(|i| i * (width - 1) / (columns - 1));
-            let first = slot(from, y);
-            if first == slot(to, y) {
+            let first = color_index(from, y);
+            if first == color_index(to, y) {
                 continue;
             }
             while to - from > 1 {
                 let middle = from.midpoint(to);
-                if slot(middle, y) == first {
+                if color_index(middle, y) == first {
                     from = middle;
                 } else {
                     to = middle;
@@ -242,11 +242,17 @@ fn most_colors(scene: &Scene, world: &World) -> [u32; 2] {
 /// near the horizon of a checkerboard.
 fn evenness(world: &World, [x, y]: [u32; 2]) -> f64 {
     let at = |i: u32| (f64::from(i) + 0.5) / 8.0 - 0.5;
-    let slot = |cell: u32| world.slot_at(x, y, DVec2::new(at(cell % 8), at(cell / 8)));
-    let mut slots: Vec<usize> = (0..64).map(slot).collect();
-    let changes = slots.windows(2).filter(|pair| pair[0] != pair[1]).count();
-    slots.sort_unstable();
-    let runs = slots.chunk_by(|a, b| a == b).map(|run| run.len() as f64);
+    let color_index =
+        |cell: u32| world.color_index_at(x, y, DVec2::new(at(cell % 8), at(cell / 8)));
+    let mut color_indices: Vec<usize> = (0..64).map(color_index).collect();
+    let changes = color_indices
+        .windows(2)
+        .filter(|pair| pair[0] != pair[1])
+        .count();
+    color_indices.sort_unstable();
+    let runs = color_indices
+        .chunk_by(|a, b| a == b)
+        .map(|run| run.len() as f64);
     let colors = runs.clone().count().min(3) as f64;
     let alike = runs.map(|run| run * run).sum::<f64>() / 4096.0;
     0.2 * colors - alike - 0.02 * changes as f64

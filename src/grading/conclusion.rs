@@ -188,7 +188,7 @@ fn with_mistakes(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     let mut mistakes = attributed(judge, last, is_explained);
     let square = |candidate: &Candidate| {
         let shown = judge.predicted(candidate, &judge.fine);
-        shown.map_or(f64::INFINITY, |shown| shown.strays().square())
+        shown.map_or(f64::INFINITY, |shown| shown.unexplained_errors().square())
     };
     let correct = Candidate::correct(scene);
     let rest = (!is_explained).then(|| square(last) / square(&correct));

@@ -81,7 +81,7 @@ pub struct Reference {
 /// Number of bytes per pixel that computing the exact picture needs: seven colours of three numbers
 /// each. One colour is the exact mean. The [`Moments`] of a pixel are three more: a mean, its
 /// variance, and the variance of a sample. While they are collected, two copies of them exist.
-const BYTES_A_PIXEL: u64 = 7 * size_of::<[f64; 3]>() as u64;
+const BYTES_PER_PIXEL: u64 = 7 * size_of::<[f64; 3]>() as u64;
 
 impl fmt::Debug for Reference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -113,7 +113,7 @@ impl Reference {
         control: &Control,
     ) -> Result<Self, RenderError> {
         check_part(part, Area::whole(scene.image.width, scene.image.height))?;
-        reserve_memory(part.width, part.height, BYTES_A_PIXEL)?;
+        reserve_memory(part.width, part.height, BYTES_PER_PIXEL)?;
         let world = World::new_unless(scene, control.cancel)?;
         let integrator = Integrator::for_values(&world, moments::numbers(Curve::Correct));
         let integrator = match rounding {

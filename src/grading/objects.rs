@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     hypotheses::{Candidate, Layout, Owner},
-    scoring::Strays,
+    scoring::UnexplainedErrors,
     search::Judge,
 };
 use crate::{
@@ -69,7 +69,9 @@ pub fn judged(judge: &Judge, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool
         one.is_right = is_drawn[index] && shapes[0] == shapes[1] && one.off < HALF_PIXEL;
     }
     let right = judge.predicted(&candidate.drawn_correctly(), &judge.fine);
-    let strays = right.map_or_else(Strays::default, |right| right.strays());
+    let unexplained_errors = right.map_or_else(UnexplainedErrors::default, |right| {
+        right.unexplained_errors()
+    });
     let grid = &judge.fine.grid;
     let labels = judge.labels(candidate, Layout::default(), grid);
     let is_moved: Vec<bool> = objects.iter().map(|one| !one.is_right).collect();
@@ -80,7 +82,7 @@ pub fn judged(judge: &Judge, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool
     // The background is treated as one more object, whose index follows those of all others.
     let group =
         |at: usize| (!is_of_another(at)).then_some(labels[at].unwrap_or(scene.objects.len()));
-    let are_right = strays.are_empty(scene.objects.len() + 1, group);
+    let are_right = unexplained_errors.are_empty(scene.objects.len() + 1, group);
     for (one, is_right) in objects.iter_mut().zip(&are_right) {
         one.is_right &= is_right;
     }

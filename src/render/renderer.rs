@@ -35,12 +35,12 @@ const WIDE_SAMPLES: u64 = 8;
 /// ratio, samples are traced one by one. Above it, the pixel is first prepared, so that many
 /// samples can be traced at a time. The value is not critical: by measurement, a picture takes up
 /// to 2 % longer with 1 or 4.
-const SAMPLES_A_CANDIDATE: u64 = 2;
+const ONE_BY_ONE_RATIO: u64 = 2;
 
 /// Maximum number of a pixel's samples that are traced between two checks for cancellation. 4096
 /// samples take 40 µs if many are traced at a time, and 0.3 ms one by one, so cancellation is
 /// quick.
-const SAMPLES_A_CHUNK: u64 = 1 << 12;
+const SAMPLES_PER_CHUNK: u64 = 1 << 12;
 
 /// Side, in pixels, of the squares into which crowded areas are divided. An area is crowded if so
 /// many objects may be seen in it that preparing its pixels would take too long. For each square,
@@ -87,8 +87,8 @@ impl<P: film::Pixel> Renderer<'_, P> {
             unreported: 0,
         };
         let mut visit = |part: PicturePart| match part {
-            PicturePart::OneColor { area, slot } => {
-                film.fill(area, self.shown[slot]);
+            PicturePart::OneColor { area, color_index } => {
+                film.fill(area, self.shown[color_index]);
                 self.go_on()
             }
             PicturePart::Pixel {
@@ -135,7 +135,7 @@ impl<P: film::Pixel> Renderer<'_, P> {
             // If there are few samples, they are traced one by one, because preparing the pixel
             // would take longer.
             Trace::Batched(candidates, _)
-                if samples <= SAMPLES_A_CANDIDATE * candidates.len() as u64 =>
+                if samples <= ONE_BY_ONE_RATIO * candidates.len() as u64 =>
             {
                 Trace::AmongCandidates(candidates)
             }
@@ -145,9 +145,10 @@ impl<P: film::Pixel> Renderer<'_, P> {
         let trace = match trace {
             Trace::AmongNearby(Some(nearby)) if samples >= SAMPLES_WORTH_A_LOOK => {
                 let pixel = Area::pixel(x, y);
-                if let Some(slot) = nearby::in_part(self.world, pixel, nearby, &mut narrowed) {
+                if let Some(color_index) = nearby::in_part(self.world, pixel, nearby, &mut narrowed)
+                {
                     tally.narrowed = narrowed;
-                    film.fill(pixel, self.shown[slot]);
+                    film.fill(pixel, self.shown[color_index]);
                     return self.go_on();
                 }
                 Trace::AmongNearby(Some(&narrowed))
@@ -157,11 +158,11 @@ impl<P: film::Pixel> Renderer<'_, P> {
         if let Trace::Batched(candidates, checks) = trace {
             samples::prepare(self.world, [x, y], candidates, checks, &mut tally.pixel);
         }
-        for first in (0..samples).step_by(SAMPLES_A_CHUNK as usize) {
-            let end = samples.min(first + SAMPLES_A_CHUNK);
+        for first in (0..samples).step_by(SAMPLES_PER_CHUNK as usize) {
+            let end = samples.min(first + SAMPLES_PER_CHUNK);
             self.chunk([x, y], samples, first..end, trace, tally);
             film.unreported += end - first;
-            if film.unreported >= SAMPLES_A_CHUNK {
+            if film.unreported >= SAMPLES_PER_CHUNK {
                 (self.control.progress)(std::mem::take(&mut film.unreported));
             }
             self.go_on()?;
@@ -205,17 +206,20 @@ impl<P: film::Pixel> Renderer<'_, P> {
                 points.lanes(),
                 points.len(),
                 vectors,
-                |slot, samples| counts.add(slot, samples),
+                |color_index, samples| counts.add(color_index, samples),
             ),
             Trace::AmongCandidates(candidates) => {
                 let objects = candidates.iter().map(|candidate| candidate.object);
                 for offset in wanted {
-                    counts.add(self.world.slot_among(x, y, offset, objects.clone()), 1);
+                    counts.add(
+                        self.world.color_index_among(x, y, offset, objects.clone()),
+                        1,
+                    );
                 }
             }
             Trace::AmongNearby(nearby) => {
                 for offset in wanted {
-                    counts.add(self.world.slot_near(x, y, offset, nearby), 1);
+                    counts.add(self.world.color_index_near(x, y, offset, nearby), 1);
                 }
             }
         }

@@ -20,9 +20,9 @@ pub(super) struct PixelTally<P> {
 }
 
 impl<P> PixelTally<P> {
-    pub(super) fn new(slots: usize) -> Self {
+    pub(super) fn new(colors: usize) -> Self {
         Self {
-            counts: Counts::new(slots),
+            counts: Counts::new(colors),
             means: Means(Vec::new()),
             pixel: PreparedPixel::default(),
             points: Points::default(),
@@ -33,46 +33,48 @@ impl<P> PixelTally<P> {
 
 /// Number of samples that saw each colour, in one pixel.
 pub(super) struct Counts {
-    /// The number of samples for each slot (index) of the palette of colours.
+    /// The number of samples for each colour of the palette, by its index.
     of: Vec<u64>,
-    /// Palette slots (indices of colours) whose count is not 0, in any order. After each pixel,
-    /// only these counts are reset, because a palette may be long, while a pixel shows few of its
+    /// Palette indices of the colours whose count is not 0, in any order. After each pixel, only
+    /// these counts are reset, because a palette may be long, while a pixel shows few of its
     /// colours.
     seen: Vec<usize>,
 }
 
 impl Counts {
-    pub(super) fn new(slots: usize) -> Self {
+    pub(super) fn new(colors: usize) -> Self {
         Self {
-            of: vec![0; slots],
+            of: vec![0; colors],
             seen: Vec::new(),
         }
     }
 
-    pub(super) fn add(&mut self, slot: usize, count: u64) {
-        if self.of[slot] == 0 {
-            self.seen.push(slot);
+    pub(super) fn add(&mut self, color_index: usize, count: u64) {
+        if self.of[color_index] == 0 {
+            self.seen.push(color_index);
         }
-        self.of[slot] += count;
+        self.of[color_index] += count;
     }
 
-    /// Returns the palette slots (indices of colours) that were seen, in ascending order, with
-    /// their counts.
+    /// Returns the palette indices of the colours that were seen, in ascending order, with their
+    /// counts.
     fn seen(&mut self) -> impl Iterator<Item = (usize, u64)> {
         self.seen.sort_unstable();
-        self.seen.iter().map(|&slot| (slot, self.of[slot]))
+        self.seen
+            .iter()
+            .map(|&color_index| (color_index, self.of[color_index]))
     }
 
     fn clear(&mut self) {
-        for slot in self.seen.drain(..) {
-            self.of[slot] = 0;
+        for color_index in self.seen.drain(..) {
+            self.of[color_index] = 0;
         }
     }
 }
 
 /// A cache of mean colours of pixels that show two colours. Most pixels with several colours show
 /// two, usually with the same counts as an earlier pixel. An entry is found by a hash of the two
-/// colours' palette slots (indices) and counts.
+/// colours' palette indices and counts.
 pub(super) struct Means<P>(Vec<([(usize, u64); 2], P)>);
 
 /// Number of entries of the cache of mean colours. The cache has at most 28 KiB, so it fits into
@@ -89,16 +91,16 @@ impl<P: film::Pixel> Means<P> {
         encoder: &Encoder,
     ) -> P {
         let pixel = match *counts.seen.as_slice() {
-            [slot] => P::of(colors[slot], encoder),
+            [color_index] => P::of(colors[color_index], encoder),
             [a, b] => self.of_two(
-                [a.min(b), a.max(b)].map(|slot| (slot, counts.of[slot])),
+                [a.min(b), a.max(b)].map(|color_index| (color_index, counts.of[color_index])),
                 colors,
                 encoder,
             ),
             _ => {
                 let seen = counts.seen();
                 P::of(
-                    mean(seen.map(|(slot, count)| (count, colors[slot]))),
+                    mean(seen.map(|(color_index, count)| (count, colors[color_index]))),
                     encoder,
                 )
             }
@@ -113,7 +115,7 @@ impl<P: film::Pixel> Means<P> {
             self.0.resize(CACHED_MEANS, ([(0, 0); 2], P::default()));
         }
         let [(a, count), (b, other)] = seen;
-        // Any hash is suitable. Odd prime factors distribute counts and palette slots over the
+        // Any hash is suitable. Odd prime factors distribute counts and palette indices over the
         // cache.
         let place = (count as usize)
             .wrapping_add((other as usize).wrapping_mul(7))
@@ -121,7 +123,10 @@ impl<P: film::Pixel> Means<P> {
             % CACHED_MEANS;
         let cached = &mut self.0[place];
         if cached.0 != seen {
-            let light = mean(seen.into_iter().map(|(slot, count)| (count, colors[slot])));
+            let light = mean(
+                seen.into_iter()
+                    .map(|(color_index, count)| (count, colors[color_index])),
+            );
             *cached = (seen, P::of(light, encoder));
         }
         cached.1

@@ -65,7 +65,7 @@ impl BlockRow {
 
     /// Returns the conditions on several fields, such as `near < far`, that mention the field.
     pub fn rules_of(&self, field: &str) -> impl Iterator<Item = &'static str> {
-        self.together.iter().copied().filter(move |rule| {
+        self.joint_conditions.iter().copied().filter(move |rule| {
             let mut words = rule.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
             words.any(|word| word == field)
         })

@@ -32,7 +32,7 @@ pub struct BlockRow {
     pub choices: &'static [Choice],
     /// Conditions that relate several fields: formulas such as `near < far`, or phrases that name
     /// the fields.
-    pub together: &'static [&'static str],
+    pub joint_conditions: &'static [&'static str],
     /// Words that people write by mistake to set several fields at once, as in
     /// `resolution (640, 480)`. An element consists of such words, separated by spaces, and the
     /// names of the fields.
@@ -43,7 +43,7 @@ pub struct BlockRow {
     /// The first part of an entry is a list of groups, such as `x y z|cx cy cz`: `|` separates
     /// groups, and a space separates words. The second part names the fields that were meant: one
     /// field if each word stands for one component of its value, or else one field for each word.
-    pub parted: &'static [(&'static str, &'static [&'static str])],
+    pub split_words: &'static [(&'static str, &'static [&'static str])],
     /// Words that people use by mistake for the keyword, separated by spaces.
     pub also_tried: &'static str,
     /// Words that name a field in other programs, although this block has no such field. An element
@@ -160,9 +160,9 @@ const BLOCK: BlockRow = BlockRow {
     help: "",
     fields: &[],
     choices: &[],
-    together: &[],
+    joint_conditions: &[],
     several: &[],
-    parted: &[],
+    split_words: &[],
     also_tried: "",
     elsewhere: &[],
     nameless: &[],
@@ -221,7 +221,7 @@ blocks! {
                 why: "one of d, fov and hfov says how much the camera sees",
             },
         ],
-        together: &["lookat ≠ eye", "near < far"],
+        joint_conditions: &["lookat ≠ eye", "near < far"],
         also_tried: "cam view viewer eye",
         elsewhere: &[
             ("aspect aspect_ratio ratio right",
@@ -250,7 +250,7 @@ blocks! {
             ways: &[names!(SAMPLER per_pixel), names!(SAMPLER total)],
             why: "either one says how many samples there are",
         }],
-        together: &["per_pixel times the number of pixels is at most 2^53"],
+        joint_conditions: &["per_pixel times the number of pixels is at most 2^53"],
         also_tried: "sampling samples antialiasing",
     }
 
@@ -263,7 +263,7 @@ blocks! {
         noun: "a sphere",
         is_object: true,
         help: "a sphere",
-        parted: &[("x y z|cx cy cz", names!(SPHERE center))],
+        split_words: &[("x y z|cx cy cz", names!(SPHERE center))],
         nameless: &[names!(SPHERE center), names!(SPHERE center radius)],
         added: "center {at}  radius {size}",
         also_tried: "ball circle globe",
@@ -293,8 +293,8 @@ blocks! {
         }],
         several: &[("vertices points corners vertex", names!(TRIANGLE v0 v1 v2))],
         added: "centroid {at}  normal {across}  sides ({twice}, {twice}, {size})",
-        parted: &[("v1 v2 v3|p1 p2 p3|vertex1 vertex2 vertex3|point1 point2 point3|corner1 corner2 corner3", names!(TRIANGLE v0 v1 v2))],
-        together: &[
+        split_words: &[("v1 v2 v3|p1 p2 p3|vertex1 vertex2 vertex3|point1 point2 point3|corner1 corner2 corner3", names!(TRIANGLE v0 v1 v2))],
+        joint_conditions: &[
             "the sides form a triangle: each is shorter than the two others together",
             "v0, v1 and v2 do not lie on one line",
         ],
@@ -326,7 +326,7 @@ blocks! {
                 why: "a box has one colour, or one for its faces across each axis",
             },
         ],
-        parted: &[
+        split_words: &[
             ("corner1 corner2|p1 p2|p0 p1|from to|lower upper|a b", names!(BOX min max)),
             ("width height depth|w h d|size_x size_y size_z", names!(BOX size)),
             ("x y z|cx cy cz", names!(BOX center)),
@@ -334,7 +334,7 @@ blocks! {
         ],
         nameless: &[names!(BOX min max)],
         added: "center {at}  size ({twice}, {twice}, {twice})",
-        together: &["min < max on every axis"],
+        joint_conditions: &["min < max on every axis"],
         also_tried: "cube cuboid block crate brick wall slab",
         elsewhere: &[
             ("width height depth x y z", "write `size (WIDTH, HEIGHT, DEPTH)`, its extents along x, y and z"),
@@ -353,7 +353,7 @@ blocks! {
         is_object: true,
         help: "the infinite checkered floor in a horizontal plane",
         added: "y {below}",
-        parted: &[("color1 color2|colour1 colour2|color_a color_b|even odd", names!(CHECKERBOARD colors))],
+        split_words: &[("color1 color2|colour1 colour2|color_a color_b|even odd", names!(CHECKERBOARD colors))],
         also_tried: "plane floor ground checker chessboard board",
         elsewhere: &[(
             "size width depth length extent extents rows columns",

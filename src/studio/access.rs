@@ -91,18 +91,18 @@ struct Started {
     /// Time until which the token in the command line is valid.
     until: Instant,
     /// Session of the page that has used the token in the command line; `None` before that.
-    session: Option<Pass>,
+    session: Option<Permission>,
 }
 
 /// Permission for a page to open WebSocket connections. It can be revoked.
 #[derive(Clone, Debug)]
-pub struct Pass {
+pub struct Permission {
     /// Token that the page sends when it connects again.
     pub token: String,
     is_over: Arc<AtomicBool>,
 }
 
-impl Pass {
+impl Permission {
     fn new(token: String) -> Self {
         Self {
             token,
@@ -161,10 +161,10 @@ impl Access {
     /// # Errors
     ///
     /// Returns the reason if the token is unknown, too late or used twice.
-    pub fn admit(&self, token: &str, now: Instant) -> Result<Pass, NotAdmitted> {
+    pub fn admit(&self, token: &str, now: Instant) -> Result<Permission, NotAdmitted> {
         let mut started = lock(&self.started);
         if is_equal(token, &self.printed) {
-            return Ok(Pass::new(self.printed.clone()));
+            return Ok(Permission::new(self.printed.clone()));
         }
         if is_equal(token, &started.once) {
             return match &started.session {
@@ -177,7 +177,7 @@ impl Access {
                 None if now > started.until => Err(NotAdmitted::Late),
                 None => {
                     let token = secret().map_err(|_| NotAdmitted::Unknown)?;
-                    Ok(started.session.insert(Pass::new(token)).clone())
+                    Ok(started.session.insert(Permission::new(token)).clone())
                 }
             };
         }

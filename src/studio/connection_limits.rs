@@ -66,8 +66,8 @@ impl Visitor {
     }
 }
 
-impl Connected<IncomingStream<'_, Door>> for Visitor {
-    fn connect_info(stream: IncomingStream<'_, Door>) -> Self {
+impl Connected<IncomingStream<'_, LimitedListener>> for Visitor {
+    fn connect_info(stream: IncomingStream<'_, LimitedListener>) -> Self {
         stream.io().visitor.clone()
     }
 }
@@ -75,13 +75,13 @@ impl Connected<IncomingStream<'_, Door>> for Visitor {
 /// A listener that applies the limits to each connection until the connection has sent a valid
 /// token.
 #[derive(Debug)]
-pub struct Door {
+pub struct LimitedListener {
     listener: TcpListener,
     /// Connections that have not sent a valid token, the oldest first.
     strangers: VecDeque<Weak<VisitorState>>,
 }
 
-impl Door {
+impl LimitedListener {
     /// Creates a limiting listener from a plain one.
     pub fn new(listener: TcpListener) -> Self {
         Self {
@@ -104,7 +104,7 @@ impl Door {
     }
 }
 
-impl Listener for Door {
+impl Listener for LimitedListener {
     type Io = Connection;
     type Addr = SocketAddr;
 

@@ -20,7 +20,7 @@ use serde_json::{Value, json};
 use tokio::{runtime::Handle, sync::watch, time::timeout};
 
 use super::{
-    access::{NotAdmitted, Pass},
+    access::{NotAdmitted, Permission},
     download,
     draft::Unsaved,
     lesson_file::LessonFile,
@@ -60,12 +60,12 @@ const PROGRESS: Duration = Duration::from_millis(200);
 /// for its connections, so this time must be shorter.
 const FAREWELL: Duration = Duration::from_millis(200);
 
-/// Serves the page until it disconnects, its [`Pass`] is revoked, or the host ends. The tasks of
-/// `runtime` transport the messages.
+/// Serves the page until it disconnects, its [`Permission`] is revoked, or the host ends. The tasks
+/// of `runtime` transport the messages.
 pub fn converse(
     runtime: Handle,
     socket: WebSocket,
-    pass: &Pass,
+    permission: &Permission,
     ending: &watch::Receiver<bool>,
     file: &Mutex<SceneFile>,
     lesson: Option<&LessonFile>,
@@ -73,7 +73,7 @@ pub fn converse(
     let mut conversation = Conversation {
         runtime,
         socket,
-        pass,
+        permission,
         ending,
         server: Server::new(|_| {}),
         file,
@@ -97,7 +97,7 @@ struct Closing(Option<CloseCode>);
 struct Conversation<'a> {
     runtime: Handle,
     socket: WebSocket,
-    pass: &'a Pass,
+    permission: &'a Permission,
     ending: &'a watch::Receiver<bool>,
     server: Server,
     /// The file of the scene, which all pages share.
@@ -119,10 +119,10 @@ struct Download {
 
 impl Conversation<'_> {
     fn run(&mut self) -> Result<Infallible, Closing> {
-        let params = json!({ "token": self.pass.token });
+        let params = json!({ "token": self.permission.token });
         self.notify("studio/session", params)?;
         while self.server.ended().is_none() {
-            if let Some(code) = over(self.pass, self.ending) {
+            if let Some(code) = over(self.permission, self.ending) {
                 return Err(Closing(Some(code)));
             }
             self.send_file()?;
@@ -180,7 +180,7 @@ impl Conversation<'_> {
             }
             // Sending may take long if the page does not receive. Meanwhile, the host or the page's
             // session may end, so both are checked again and again.
-            if let Some(code) = over(self.pass, self.ending) {
+            if let Some(code) = over(self.permission, self.ending) {
                 return Err(Closing(Some(code)));
             }
         }
@@ -372,13 +372,15 @@ impl Conversation<'_> {
     }
 }
 
-/// Returns the code with which the socket must be closed, if the host ends or the page's [`Pass`]
-/// is revoked. Returns `None` if the connection continues.
-fn over(pass: &Pass, ending: &watch::Receiver<bool>) -> Option<CloseCode> {
+/// Returns the code with which the socket must be closed, if the host ends or the page's
+/// [`Permission`] is revoked. Returns `None` if the connection continues.
+fn over(permission: &Permission, ending: &watch::Receiver<bool>) -> Option<CloseCode> {
     if *ending.borrow() {
         return Some(close_code::AWAY);
     }
-    pass.is_over().then_some(NotAdmitted::Twice as CloseCode)
+    permission
+        .is_over()
+        .then_some(NotAdmitted::Twice as CloseCode)
 }
 
 /// Returns the code with which the socket is closed after an invalid message. Returns `None` if the

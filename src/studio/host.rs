@@ -27,8 +27,8 @@ use tokio::{
 };
 
 use super::{
-    access::{self, Access, Pass},
-    connection_limits::{Door, Visitor},
+    access::{self, Access, Permission},
+    connection_limits::{LimitedListener, Visitor},
     conversation::{self, converse},
     lesson_file::LessonFile,
     scene_file::SceneFile,
@@ -110,7 +110,7 @@ impl Host {
             .enable_time()
             .build()?;
         runtime.block_on(async {
-            let door = Door::new(tokio::net::TcpListener::from_std(self.listener)?);
+            let door = LimitedListener::new(tokio::net::TcpListener::from_std(self.listener)?);
             let mut ending = self.shared.ending.subscribe();
             let serving = axum::serve(door, routes(self.port, Arc::clone(&self.shared)))
                 .with_graceful_shutdown(async move {
@@ -207,9 +207,9 @@ async fn admit(shared: &Arc<Shared>, visitor: &Visitor, mut socket: WebSocket) {
         return;
     };
     match shared.access.admit(&token, Instant::now()) {
-        Ok(pass) => {
+        Ok(permission) => {
             visitor.admit();
-            begin(Arc::clone(shared), pass, socket);
+            begin(Arc::clone(shared), permission, socket);
         }
         Err(refusal) => {
             let code = refusal as u16;
@@ -224,13 +224,13 @@ async fn admit(shared: &Arc<Shared>, visitor: &Visitor, mut socket: WebSocket) {
 }
 
 /// Serves a page on a new thread. If no thread can be started, the connection is closed.
-fn begin(shared: Arc<Shared>, pass: Pass, socket: WebSocket) {
+fn begin(shared: Arc<Shared>, permission: Permission, socket: WebSocket) {
     let runtime = Handle::current();
     let ending = shared.ending.subscribe();
     let thread = thread::Builder::new().name("connection".to_owned());
     // A panic of the thread ends only its own connection, so the result is ignored.
     let _ = thread.spawn(move || {
         let (file, lesson) = (&shared.file, shared.lesson.as_ref());
-        converse(runtime, socket, &pass, &ending, file, lesson);
+        converse(runtime, socket, &permission, &ending, file, lesson);
     });
 }

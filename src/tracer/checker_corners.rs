@@ -37,7 +37,7 @@ const MIN_CLEARANCE: f64 = 4.0;
 /// are not derived from the coordinates of its corners. With an error of 1/4, the square at a
 /// corner is certain only if the corner lies in the middle half of the square's width. With a
 /// larger error, few squares would be certain.
-const MAX_ERROR: f64 = 0.25;
+const MAX_COORDINATE_ERROR: f64 = 0.25;
 
 /// Maximum side of a block of pixels, in pixels. The checkerboard squares at all pixel corners of a
 /// block are computed together. The picture is first divided into blocks of this side, which are
@@ -154,7 +154,7 @@ impl BoardBlock {
             let greatest = (across.factors[2].abs() + across.spread() + across.rad) / least;
             squares.slack(&across, greatest, least)
         });
-        if !slack.iter().all(|&slack| slack < MAX_ERROR) {
+        if !slack.iter().all(|&slack| slack < MAX_COORDINATE_ERROR) {
             return None;
         }
         let mut columns = [0.0; LANES];
@@ -435,7 +435,7 @@ impl CheckerForms {
             let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
             let size = low.abs().max(high.abs());
             let slack = self.slack(across, size, least);
-            (slack < MAX_ERROR).then(|| (floor(low - slack), floor(high + slack)))
+            (slack < MAX_COORDINATE_ERROR).then(|| (floor(low - slack), floor(high + slack)))
         });
         Some([x?, z?])
     }

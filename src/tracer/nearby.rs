@@ -60,8 +60,8 @@ pub fn in_part(
     match (out.as_slice(), front) {
         ([], None) => Some(world.background()),
         ([only], Some(front)) if only.object == front => {
-            let [slot, second] = world.slots(front as usize);
-            (slot == second).then_some(slot)
+            let [color_index, second] = world.color_indices(front as usize);
+            (color_index == second).then_some(color_index)
         }
         _ => None,
     }

@@ -77,7 +77,7 @@ pub fn ray(world: &World, pixels: DVec2) -> (DVec3, Vec<Hit>) {
             t: settled(&(&lambda * &length)),
             depth: settled(&(&lambda * &along[2])),
             point: [0, 1, 2].map(coordinate).into(),
-            color: world.palette()[world.slots(index)[usize::from(odd)]],
+            color: world.palette()[world.color_indices(index)[usize::from(odd)]],
             visible: seen.is_some_and(|seen| seen.object == index && seen.second == second),
         }
     };

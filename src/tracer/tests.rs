@@ -116,16 +116,16 @@ type Sample = (u32, u32, DVec2);
 /// Returns the palette index of the colour that is seen at a sample point, by the plain loop over
 /// all objects.
 fn plain(world: &World, (x, y, offset): Sample) -> usize {
-    world.slot_among(x, y, offset, 0..world.object_count())
+    world.color_index_among(x, y, offset, 0..world.object_count())
 }
 
 /// Returns the palette index of the colour that is seen at a sample point, decided in the precision
 /// `T` alone. Returns `None` if the decision is uncertain in this precision.
-fn slot_by<T: Precision>(world: &World, (x, y, offset): Sample) -> Option<usize> {
+fn color_index_by<T: Precision>(world: &World, (x, y, offset): Sample) -> Option<usize> {
     let point = world.geometry.fast.camera.sample_point(x, y, offset);
     let r = T::frame(&world.geometry).camera.direction(&point);
     let seen = world.seen(&r, 0..world.object_count()).ok()?;
-    Some(world.slot(seen))
+    Some(world.color_index(seen))
 }
 
 /// Returns the sample at a point of the view plane. Returns `None` if the point is outside of the
@@ -165,7 +165,7 @@ fn the_quadtree_changes_nothing() {
         }
         for point in points {
             let (x, y, offset) = point;
-            let found = world.slot_at(x, y, offset);
+            let found = world.color_index_at(x, y, offset);
             assert_eq!(found, plain(&world, point), "seed {seed}, {point:?}");
         }
     }
@@ -197,9 +197,9 @@ fn f64_alone_decides_nearly_everything() {
         let world = World::new(&scene(camera, shapes));
         for _ in 0..20_000 {
             let point = random.point();
-            let single = slot_by::<f64>(&world, point);
+            let single = color_index_by::<f64>(&world, point);
             assert!(single.is_some(), "{point:?}");
-            assert_eq!(single, slot_by::<Double>(&world, point));
+            assert_eq!(single, color_index_by::<Double>(&world, point));
         }
     }
 }
@@ -253,9 +253,9 @@ fn bounds_are_tight() {
         };
         let step = 1e-6 * (across[0].high - across[0].low);
         for (end, inwards) in [(across[0].low, step), (across[0].high, -step)] {
-            for (x, slot) in [(end + inwards, 0), (end - inwards, 1)] {
+            for (x, color_index) in [(end + inwards, 0), (end - inwards, 1)] {
                 let point = sample_of(&world, dvec2(x, 0.0)).expect("a point of the picture");
-                assert_eq!(plain(&world, point), slot, "{shape:?} at {x}");
+                assert_eq!(plain(&world, point), color_index, "{shape:?} at {x}");
             }
         }
     }
@@ -334,7 +334,7 @@ fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
         let (x, y, offset) = random.point();
         let point = world.geometry.fast.camera.sample_point(x, y, offset);
         several += usize::from(world.candidates(&point).len() > 2);
-        world.slot_at(x, y, offset);
+        world.color_index_at(x, y, offset);
     }
     assert!(several > 1000, "{several} points with several objects");
     let Geometry { double, big, .. } = &world.geometry;
@@ -379,7 +379,7 @@ fn very_many_objects() {
             point = sample_of(&world, dvec2(x, y)).expect("the middle of the picture");
         }
         let (x, y, offset) = point;
-        let found = world.slot_at(x, y, offset);
+        let found = world.color_index_at(x, y, offset);
         assert_eq!(found, plain(&world, point), "{point:?}");
         seen += usize::from(found < world.background());
     }

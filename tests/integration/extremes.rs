@@ -209,7 +209,7 @@ fn the_nearest_surface_is_seen_at_the_centre_of_the_widest_views() {
                     "image {{ width 1 height 1 }} camera {{ eye (1, 1.4, 2) {view} d {d} far 100 }} {objects}"
                 );
                 let world = World::new(&read(&text));
-                let seen = world.slot_at(0, 0, DVec2::ZERO);
+                let seen = world.color_index_at(0, 0, DVec2::ZERO);
                 assert_eq!(world.palette()[seen].to_linear(), [1.0; 3], "{text}");
             }
         }

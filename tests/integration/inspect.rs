@@ -141,8 +141,8 @@ fn probe_sees_the_colour_that_the_picture_shows() {
     for y in (0..450).step_by(37) {
         for x in (0..800).step_by(41) {
             let probe = probe(&scene, dvec2(f64::from(x) + 0.5, f64::from(y) + 0.5));
-            let slot = world.slot_at(x, y, DVec2::ZERO);
-            assert_eq!(probe.color, world.palette()[slot]);
+            let color_index = world.color_index_at(x, y, DVec2::ZERO);
+            assert_eq!(probe.color, world.palette()[color_index]);
         }
     }
 }

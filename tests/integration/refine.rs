@@ -36,7 +36,7 @@ fn coarse_steps_become_finer_and_show_the_centres_of_blocks() {
                 let (right, down) = (block.width - 1, block.height - 1);
                 let offset = dvec2(f64::from(right % 2), f64::from(down % 2)) / 2.0;
                 let (x, y) = (block.x + right / 2, block.y + down / 2);
-                let color = world.palette()[world.slot_at(x, y, offset)];
+                let color = world.palette()[world.color_index_at(x, y, offset)];
                 assert_eq!(*pixel, color.to_linear(), "{block}");
             }
         }

@@ -22,9 +22,9 @@ use super::{
 };
 use crate::{
     cli::{
-        Trouble,
+        CommandError, command_error,
         input::{is_standard, shown, unreadable},
-        judge, trouble,
+        judge,
     },
     files,
 };
@@ -51,7 +51,11 @@ impl Class {
     ///
     /// Returns an error if a folder or zip file on the command line cannot be read. A missing
     /// picture causes no error here; it is reported when the picture is judged.
-    pub fn read(paths: &[PathBuf], own: &[&Path], chosen: Option<&Glob>) -> Result<Self, Trouble> {
+    pub fn read(
+        paths: &[PathBuf],
+        own: &[&Path],
+        chosen: Option<&Glob>,
+    ) -> Result<Self, CommandError> {
         let mut class = Self::default();
         let mut rest: Vec<&PathBuf> = paths.iter().collect();
         for (parent, names) in expanded_classes(paths) {
@@ -360,9 +364,9 @@ fn tell_apart(students: &mut [Student]) {
 }
 
 /// Makes the error that the arguments contain no pictures of students.
-pub fn no_students(paths: &[PathBuf]) -> Trouble {
+pub fn no_students(paths: &[PathBuf]) -> CommandError {
     let names: Vec<_> = paths.iter().map(|path| shown(path)).collect();
-    trouble(format!(
+    command_error(format!(
         "there are no pictures in what is named: {}",
         names.join(", ")
     ))

@@ -148,7 +148,7 @@ impl GradedStudent {
     pub fn status(&self) -> Status {
         match self.best() {
             Ok(judged) if judged.is_right() => Status::Done,
-            _ => Status::SceneErrors,
+            _ => Status::Negative,
         }
     }
 

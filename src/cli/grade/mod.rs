@@ -46,12 +46,12 @@ use self::{
     thumbnails::Pictures,
 };
 use super::{
-    Status, Trouble,
+    CommandError, Status,
     args::{GradeArgs, GradeFormat},
-    diff,
+    command_error, diff,
     input::{SceneInput, check_standard, not_written, shown},
     interrupt::Interrupt,
-    judge, output, progress, trouble,
+    judge, output, progress,
 };
 use crate::{
     area::Area,
@@ -67,7 +67,7 @@ use crate::{
 const FILES: [&str; 3] = ["index.html", "grade.csv", "grade.jsonl"];
 
 /// Grades the submissions that the arguments name, and writes the results.
-pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, CommandError> {
     let input = SceneInput::read(&args.scene, &args.overrides)?;
     let scene = input.scene()?;
     let points = args.points.as_deref().map(PointScheme::read).transpose()?;
@@ -96,14 +96,14 @@ pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     }
     let has_compared = graded.iter().any(|one| one.best().is_ok());
     if class.is_one_missing || !has_compared {
-        return Ok(Status::Trouble);
+        return Ok(Status::Failed);
     }
     let status = graded.iter().map(GradedStudent::status).max();
     Ok(status.unwrap_or(Status::Done))
 }
 
 /// Reads the students and their files. The teacher's own files are left out.
-fn class(args: &GradeArgs) -> Result<Class, Trouble> {
+fn class(args: &GradeArgs) -> Result<Class, CommandError> {
     let own = [
         Some(&args.scene),
         args.output.as_ref(),
@@ -121,13 +121,13 @@ fn class(args: &GradeArgs) -> Result<Class, Trouble> {
     }
     let needs_one = args.format == GradeFormat::Gradescope && args.output.is_none();
     if needs_one && class.students.len() > 1 {
-        return Err(trouble(format!(
+        return Err(command_error(format!(
             "there are {} students, and each has a results.json: say with `-o DIR` where they go",
             class.students.len()
         )));
     }
     if args.format == GradeFormat::Moodle && args.worksheet.is_none() {
-        return Err(trouble(
+        return Err(command_error(
             "Moodle takes back the worksheet of grades that it gave: name it with `--worksheet FILE`",
         ));
     }
@@ -162,7 +162,7 @@ fn print_results(
     scene: &Scene,
     graded: &[GradedStudent],
     points: Option<&PointScheme>,
-) -> Result<Vec<(String, Vec<u8>)>, Trouble> {
+) -> Result<Vec<(String, Vec<u8>)>, CommandError> {
     match args.format {
         GradeFormat::Human => output::answer(&table::table(graded))?,
         GradeFormat::Json => output::to_programs(lines(graded).as_bytes())?,
@@ -264,7 +264,7 @@ fn graded(
     scene: &Scene,
     class: &Class,
     cancel: &AtomicBool,
-) -> Result<Answers, Trouble> {
+) -> Result<Answers, CommandError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let threads = args.threads.count();
     let threads = threads.or_else(|| thread::available_parallelism().ok());
@@ -281,7 +281,7 @@ fn graded(
     let pool = ThreadPoolBuilder::new()
         .num_threads(threads.map_or(1, NonZero::get).min(students.len()).max(1))
         .build()
-        .map_err(|error| trouble(format!("cannot start threads: {error}")))?;
+        .map_err(|error| command_error(format!("cannot start threads: {error}")))?;
     let chosen = args.picture.as_deref().map(Glob::new);
     let graded = progress::watched(students.len() as u64, |done| {
         let grade = |student: &Student| {

@@ -12,9 +12,9 @@ use csv::{ByteRecord, QuoteStyle, ReaderBuilder, Terminator, WriterBuilder};
 use super::graded::GradedStudent;
 use crate::{
     cli::{
-        Trouble,
+        CommandError, command_error,
         input::{shown, unreadable},
-        output, trouble,
+        output,
     },
     diagnostic::visible,
     files,
@@ -49,7 +49,7 @@ pub fn filled(
     columns: &[String],
     graded: &[GradedStudent],
     total: Option<f64>,
-) -> Result<Vec<u8>, Trouble> {
+) -> Result<Vec<u8>, CommandError> {
     let failed = |why: &dyn std::fmt::Display| unreadable(path, why);
     let columns = columns.iter().map(|column| renamed(column));
     let columns = columns.collect::<Result<Vec<_>, _>>()?;
@@ -162,12 +162,12 @@ pub fn filled(
 /// Parses an argument of `--columns`, such as `Grade=Bewertung`: the English heading, and the
 /// heading in the worksheet. Returns an error if the English heading is not in [`HEADINGS`], or if
 /// the other heading is missing.
-fn renamed(text: &str) -> Result<(&'static str, &str), Trouble> {
+fn renamed(text: &str) -> Result<(&'static str, &str), CommandError> {
     let (name, heading) = text.split_once('=').unwrap_or((text, ""));
     let mut headings = HEADINGS.into_iter();
     match headings.find(|own| own.eq_ignore_ascii_case(name)) {
         Some(name) if !heading.is_empty() => Ok((name, heading)),
-        _ => Err(trouble(format!(
+        _ => Err(command_error(format!(
             "`--columns {text}` is not COLUMN=HEADING, where COLUMN is {}",
             choice(HEADINGS)
         ))),

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::{criteria, graded::JudgedPicture};
 use crate::{
-    cli::{Trouble, input::unreadable},
+    cli::{CommandError, input::unreadable},
     files,
     grading::Kind,
 };
@@ -41,7 +41,7 @@ impl PointScheme {
     /// # Errors
     ///
     /// Returns an error if the file has another form, or names an unknown mistake.
-    pub fn read(path: &Path) -> Result<Self, Trouble> {
+    pub fn read(path: &Path) -> Result<Self, CommandError> {
         let bytes = files::read(path, LIMIT).map_err(|error| unreadable(path, &error))?;
         let value: Value =
             serde_json::from_slice(&bytes).map_err(|error| unreadable(path, &error))?;

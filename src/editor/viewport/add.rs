@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     camera::distance,
-    edits::{changes, edits, together},
+    edits::{changes, edits, rounded_in_ratio},
     handles::{Along, handles, moved},
 };
 use crate::{
@@ -159,7 +159,7 @@ pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option
         let to = projection.point(at?)? + DVec2::new(projection.size.x / 20.0, 0.0);
         let moved = moved(object.shape, handle, to, Some(Along::Floor), &projection).ok()?;
         let changes = changes(block, FieldOwner::Shape(object.shape), moved);
-        let (changes, rounding) = together(&changes, 1);
+        let (changes, rounding) = rounded_in_ratio(&changes, 1);
         edits(analysis, block, &changes, &rounding)
     };
     let is_own =

@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     camera,
-    edits::{FieldChange, changes, edits, rounded, together},
+    edits::{FieldChange, changes, edits, rounded, rounded_in_ratio},
     handles::{self, Along, TOLERANCE, TOO_FAR, handles, side_held},
     observer::Observer,
     outside::{camera_handles, moved_camera},
@@ -194,7 +194,7 @@ pub fn drag(
             || fields.all(|field| is_meant(field) || found.value(field) == current.value(field))
     };
     for decimals in first..=first + DIGITS {
-        let (changes, rounding) = together(&changes, decimals);
+        let (changes, rounding) = rounded_in_ratio(&changes, decimals);
         let changes = &changes;
         let edits = edits(analysis, block, changes, &rounding);
         // If the drag snaps back to the old position, no edit is needed. An empty list of edits

@@ -104,7 +104,10 @@ pub struct DecimalRounding {
 /// axis, the largest change is rounded, and the others are computed from it by the same ratios as
 /// before. So the points of the object that are not dragged stay exactly in place. An axis on which
 /// a ratio is not one of [`RATIOS`] is left out.
-pub fn together(changes: &[FieldChange], decimals: i32) -> (Vec<FieldChange>, DecimalRounding) {
+pub fn rounded_in_ratio(
+    changes: &[FieldChange],
+    decimals: i32,
+) -> (Vec<FieldChange>, DecimalRounding) {
     let mut changes = changes.to_vec();
     let mut exact = Vec::new();
     for axis in 0..3 {

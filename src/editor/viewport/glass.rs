@@ -80,11 +80,13 @@ pub fn glass(scene: &Scene, world: &World, pixel: [u32; 2]) -> Glass {
     let exact = exact.and_then(|pixels| pixels.first().copied());
     let exact = exact.expect("the integrator was not cancelled");
     let errors = Method::SAMPLED.map(|method| errors(&scene.sampler, method, world, pixel, &exact));
-    let slots = slots(world, pixel);
-    let colors = slots.iter().map(|&slot| world.palette()[slot].to_bytes());
+    let color_indices = color_indices(world, pixel);
+    let colors = color_indices
+        .iter()
+        .map(|&color_index| world.palette()[color_index].to_bytes());
     let enlarged = Film::from_pixels(ROWS, ROWS, colors.collect());
     Glass {
-        seen: seen_in(scene, world, pixel, &slots),
+        seen: seen_in(scene, world, pixel, &color_indices),
         enlarged: enlarged.expect("each point is a pixel"),
         exact,
         errors: errors.into(),
@@ -98,31 +100,36 @@ fn offset(i: u32, j: u32) -> DVec2 {
 
 /// Returns, for each point at which a pixel is examined, the index of its colour in the world's
 /// palette. The points are in the order of the rows.
-fn slots(world: &World, [x, y]: [u32; 2]) -> Vec<usize> {
-    let at = |point: u32| world.slot_at(x, y, offset(point % ROWS, point / ROWS));
+fn color_indices(world: &World, [x, y]: [u32; 2]) -> Vec<usize> {
+    let at = |point: u32| world.color_index_at(x, y, offset(point % ROWS, point / ROWS));
     (0..ROWS * ROWS).map(at).collect()
 }
 
 /// Returns the colours that a pixel shows, the one with the largest area first. `world` must be
 /// built from `scene`.
 pub fn seen_colors(scene: &Scene, world: &World, pixel: [u32; 2]) -> Vec<SeenColor> {
-    seen_in(scene, world, pixel, &slots(world, pixel))
+    seen_in(scene, world, pixel, &color_indices(world, pixel))
 }
 
-fn seen_in(scene: &Scene, world: &World, [x, y]: [u32; 2], slots: &[usize]) -> Vec<SeenColor> {
+fn seen_in(
+    scene: &Scene,
+    world: &World,
+    [x, y]: [u32; 2],
+    color_indices: &[usize],
+) -> Vec<SeenColor> {
     let mut points = vec![None; world.palette().len()];
-    for (at, &slot) in (0..).zip(slots) {
-        points[slot].get_or_insert(offset(at % ROWS, at / ROWS));
+    for (at, &color_index) in (0..).zip(color_indices) {
+        points[color_index].get_or_insert(offset(at % ROWS, at / ROWS));
     }
     let middle = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
     let mut seen = Vec::new();
     Integrator::new(world).shares(Area::pixel(x, y), |_, shares| {
         let shares = shares.iter().filter(|(_, share)| *share > 0.0);
-        seen.extend(shares.map(|&(slot, share)| {
-            let at = points[slot].map(|offset| middle + offset);
+        seen.extend(shares.map(|&(color_index, share)| {
+            let at = points[color_index].map(|offset| middle + offset);
             let hit = at.and_then(|at| pick(scene, world, at)?.0);
             SeenColor {
-                color: world.palette()[slot],
+                color: world.palette()[color_index],
                 share,
                 at,
                 object: hit.map(|hit| hit.object),
@@ -172,7 +179,7 @@ fn mean(sampler: &Sampler, world: &World, [x, y]: [u32; 2], points: &mut Points)
     sampling.place(SimdWidth::Widest, [x, y], count, 0..count, points);
     let mut sum = [0.0; 3];
     for offset in points.iter() {
-        let light = world.palette()[world.slot_at(x, y, offset)].to_linear();
+        let light = world.palette()[world.color_index_at(x, y, offset)].to_linear();
         sum = [0, 1, 2].map(|i| sum[i] + light[i]);
     }
     sum.map(|sum| sum / count.max(1) as f64)

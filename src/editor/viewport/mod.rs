@@ -36,7 +36,7 @@ pub use drag::{Drag, Dragged, alone, drag};
 pub use glass::{Glass, MethodErrors, SAMPLE_COUNTS, SeenColor, glass, seen_colors};
 pub use handles::Along;
 pub use lines::clip;
-pub use observer::{Observer, USUAL_FOV, beside};
+pub use observer::{Observer, USUAL_FOV, towards_observer};
 pub use outside::{CameraHandle, CameraOverlay, PointedRay, camera_overlay};
 pub use overlays::{
     MOST_OBJECTS, ObjectOverlay, Overlays, ShownObjects, Vanishing, hide, overlays,

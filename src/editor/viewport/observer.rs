@@ -116,7 +116,7 @@ impl Observer {
     pub fn around(scene: &Scene, from: Option<DVec3>, up: DVec3, fov: f64, size: [u32; 2]) -> Self {
         let own = Projection::new(&scene.camera, &scene.image);
         let points = shown_points(scene, &own);
-        let side = from.unwrap_or_else(|| beside(&own));
+        let side = from.unwrap_or_else(|| towards_observer(&own));
         let side = unit(side).0;
         let side = if side.is_finite() { side } else { DVec3::Z };
         let bounds = |points: &mut dyn Iterator<Item = DVec3>| {
@@ -165,7 +165,7 @@ impl Observer {
 }
 
 /// Returns the direction towards an observer to the right of a camera, behind it and above it.
-pub fn beside(camera: &Projection) -> DVec3 {
+pub fn towards_observer(camera: &Projection) -> DVec3 {
     let level = (camera.ahead + camera.top * 0.2).with_y(0.0);
     let level = level.normalize_or(DVec3::NEG_Z);
     level.cross(DVec3::Y) * 0.72 - level * 0.55 + DVec3::Y * 0.42

@@ -67,7 +67,7 @@ pub fn samples(sampler: &Sampler, world: &World, [x, y]: [u32; 2]) -> Result<Pix
     let shown = 0..count.min(MOST_SAMPLES);
     sampling.place(SimdWidth::Baseline, [x, y], count, shown, &mut points);
     let sample = |offset: DVec2| {
-        let color = world.palette()[world.slot_at(x, y, offset)];
+        let color = world.palette()[world.color_index_at(x, y, offset)];
         (offset + 0.5, color)
     };
     let mean = rendered.film().pixels()[0];

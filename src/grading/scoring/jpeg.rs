@@ -14,7 +14,7 @@
 
 use glam::DVec3;
 
-use super::{moments::range, prediction::Prediction, strays::DEVIATIONS};
+use super::{moments::range, prediction::Prediction, unexplained_errors::DEVIATIONS};
 use crate::{
     area::Area,
     color::srgb_to_linear,

@@ -11,8 +11,8 @@
 //! are applied.
 //!
 //! A prediction says how likely the picture is (`likelihood`), which pixels are wrong for reasons
-//! other than sampling noise (`strays`), and whether edges are displaced (`displacement`). `work`
-//! counts the work that is spent, and limits it.
+//! other than sampling noise (`unexplained_errors`), and whether edges are displaced
+//! (`displacement`). `work` counts the work that is spent, and limits it.
 
 mod displacement;
 mod faulty_tracer;
@@ -24,7 +24,7 @@ mod linear_system;
 pub mod moments;
 mod prediction;
 mod rendering;
-mod strays;
+mod unexplained_errors;
 pub mod work;
 
 pub use self::{
@@ -37,6 +37,6 @@ pub use self::{
     moments::Moments,
     prediction::{FLAT, Prediction},
     rendering::Rendering,
-    strays::{DEVIATIONS, Strays, WRONG},
+    unexplained_errors::{DEVIATIONS, UnexplainedErrors, WRONG},
     work::Work,
 };

@@ -206,7 +206,11 @@ impl<'a> Judge<'a> {
     /// Returns the squared difference that a hypothesis leaves on the grid `middle`. Differences
     /// that sampling can explain are ignored. Returns `None` if the budget of work is used up.
     pub fn square(&self, candidate: &Candidate) -> Option<f64> {
-        Some(self.predicted(candidate, &self.middle)?.strays().square())
+        Some(
+            self.predicted(candidate, &self.middle)?
+                .unexplained_errors()
+                .square(),
+        )
     }
 
     /// Returns the differences between the picture and a hypothesis's prediction, for each channel

@@ -26,13 +26,13 @@ pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
     }
     let grid = &judge.fine.grid;
     let prediction = judge.predicted(from.candidate(), &judge.fine)?;
-    let (seen, strays) = (prediction.observed, prediction.strays().pixels);
+    let (seen, unexplained_errors) = (prediction.observed, prediction.unexplained_errors().pixels);
     let pairs = seen.iter().zip(&prediction.moments.mean);
     let mut is_left: Vec<bool> = pairs
         .map(|(seen, mean)| !is_near((*seen).into(), (*mean).into()))
         .collect();
     let mut largest: Vec<usize> = Vec::new();
-    for start in strays {
+    for start in unexplained_errors {
         if !std::mem::replace(&mut is_left[start], false) {
             continue;
         }

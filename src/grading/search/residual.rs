@@ -75,7 +75,7 @@ impl Judge<'_> {
         let is_possible = self.middle.jpeg.is_some()
             || self
                 .predicted(candidate, &self.middle)
-                .is_some_and(|it| it.strays().are_no_more(self.missed(candidate)));
+                .is_some_and(|it| it.unexplained_errors().are_no_more(self.missed(candidate)));
         is_possible
             && self
                 .residual(candidate)
@@ -112,14 +112,15 @@ impl Judge<'_> {
     fn far_from_edges(&self, candidate: &Candidate) -> Option<Residual> {
         let grid = &self.middle.grid;
         let prediction = self.predicted(candidate, &self.middle)?;
-        let strays = prediction.strays().pixels;
+        let unexplained_errors = prediction.unexplained_errors().pixels;
         let is_inside = |at: &&usize| grid.around(**at, 1).all(|at| prediction.is_flat(at));
-        let inside = strays.iter().filter(is_inside).count();
-        let is_far = 2 * inside > strays.len() && inside > FEW_INSIDE + self.missed(candidate);
+        let inside = unexplained_errors.iter().filter(is_inside).count();
+        let is_far =
+            2 * inside > unexplained_errors.len() && inside > FEW_INSIDE + self.missed(candidate);
         (is_far && self.fine.jpeg.is_none()).then_some(Residual {
             are_areas_right: false,
             is_at_edges: false,
-            is_much_wrong: strays.len() * MUCH_WRONG > grid.count(),
+            is_much_wrong: unexplained_errors.len() * MUCH_WRONG > grid.count(),
             is_noise_everywhere: true,
             displacement: None,
             width: None,
@@ -147,14 +148,14 @@ impl Judge<'_> {
 /// Computes what the hypothesis `candidate` leaves unexplained. `prediction` is its prediction of
 /// all pixels.
 fn residual_of(judge: &Judge, candidate: &Candidate, prediction: &Prediction) -> Residual {
-    let (level, strays) = (&judge.fine, prediction.strays());
+    let (level, unexplained_errors) = (&judge.fine, prediction.unexplained_errors());
     judge.work.spend(work::RESIDUAL * level.grid.count() as f64);
     let missed = judge.missed(candidate);
     let reach = level.jpeg.map_or(EDGE_REACH, |_| CODED_EDGE_REACH);
     let grid = &level.grid;
     let is_inside = |at: &&usize| grid.around(**at, reach).all(|at| prediction.is_flat(at));
-    let inside = strays.pixels.iter().filter(is_inside).count();
-    let is_at_edges = inside <= missed + strays.pixels.len() / PIXELS_PER_INSIDE;
+    let inside = unexplained_errors.pixels.iter().filter(is_inside).count();
+    let is_at_edges = inside <= missed + unexplained_errors.pixels.len() / PIXELS_PER_INSIDE;
     // Edges are tested only if almost all wrong pixels lie near them. If many lie elsewhere, whole
     // areas are wrong.
     let (displacement, width, is_tinted) = if is_at_edges {
@@ -168,9 +169,9 @@ fn residual_of(judge: &Judge, candidate: &Candidate, prediction: &Prediction) ->
         (None, None, false)
     };
     Residual {
-        are_areas_right: strays.are_no_more(missed) && !is_tinted,
+        are_areas_right: unexplained_errors.are_no_more(missed) && !is_tinted,
         is_at_edges,
-        is_much_wrong: strays.pixels.len() * MUCH_WRONG > grid.count(),
+        is_much_wrong: unexplained_errors.pixels.len() * MUCH_WRONG > grid.count(),
         is_noise_everywhere: candidate.is_filtered() || prediction.is_noise_everywhere(),
         displacement,
         width,

@@ -135,7 +135,7 @@ impl Trial {
     }
 
     fn ours(&self, [(x, dx), (y, dy)]: SamplePoint) -> Color {
-        self.world.palette()[self.world.slot_at(x, y, dvec2(dx, dy))]
+        self.world.palette()[self.world.color_index_at(x, y, dvec2(dx, dy))]
     }
 
     /// Returns the colour that identifies what is seen: an object, with one of its two colours if

@@ -285,7 +285,7 @@ impl<'s> Evaluator<'_, 's> {
             } else {
                 ("0", "too little")
             };
-            let found = numbers::beside(channel, &[0.0, 255.0]);
+            let found = numbers::comparable(channel, &[0.0, 255.0]);
             let message = format!("the {name} of a colour is from 0 to 255, and this is {found}");
             error("color_range", message)
                 .at(argument.value.span, label)

@@ -164,7 +164,10 @@ impl<'s> Lowering<'s> {
 
     /// Reports a `far` that is not greater than `near`.
     fn empty_depth(&mut self, block: &LoweredBlock<'s>, near: f64, far: f64, given: Given) {
-        let (near, far) = (numbers::beside(near, &[far]), numbers::beside(far, &[near]));
+        let (near, far) = (
+            numbers::comparable(near, &[far]),
+            numbers::comparable(far, &[near]),
+        );
         let problem = error("empty_depth", "`far` must be more than `near`")
             .help(format!(
                 "write a number above {near} after `far`, or leave it out"

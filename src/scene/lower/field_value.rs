@@ -72,11 +72,11 @@ impl<'s> Lowering<'s> {
             _ if is_rounded => format!("{written}, which rounds to 0"),
             (ValueKind::Name(_) | ValueKind::Call(_) | ValueKind::Chain { .. }, value) => {
                 match value {
-                    Value::Number(number) => numbers::beside(number, &[number.round()]),
+                    Value::Number(number) => numbers::comparable(number, &[number.round()]),
                     Value::Angle(Angle {
                         degrees,
                         radians: 0.0,
-                    }) => format!("{}deg", numbers::beside(degrees, &[degrees.round()])),
+                    }) => format!("{}deg", numbers::comparable(degrees, &[degrees.round()])),
                     _ => value.to_string(),
                 }
             }

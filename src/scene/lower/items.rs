@@ -149,8 +149,8 @@ impl<'s> Lowering<'s> {
                 self.names.know_words(text);
             }
         }
-        let parted = self.parted(&block.fields, &mut lowered);
-        let is_left = |field: &&tree::Field<'s>| !parted.contains(&field.name.span);
+        let split_fields = self.split_fields(&block.fields, &mut lowered);
+        let is_left = |field: &&tree::Field<'s>| !split_fields.contains(&field.name.span);
         let is_known = |field: &&tree::Field<'s>| row.field(field.name.text).is_some();
         let left = || block.fields.iter().filter(is_left);
         for field in left().filter(is_known) {

@@ -302,7 +302,7 @@ impl<'s> Lowering<'s> {
             Value::Number(number) if number >= 0.0 && number.fract() == 0.0 => {
                 return Some(number as usize);
             }
-            Value::Number(number) => numbers::beside(number, &[number.round()]),
+            Value::Number(number) => numbers::comparable(number, &[number.round()]),
             value => value.kind().noun().to_owned(),
         };
         let message = format!("`{name}` counts up to a whole number, and this is {found}");

@@ -62,7 +62,7 @@ impl<'s> Lowering<'s> {
     /// Reports several unknown words in one problem. The words may stand for the coordinates of one
     /// field, such as `x`, `y` and `z` for a centre. They may also stand for several fields, such
     /// as `p1`, `p2` and `p3` for the vertices of a triangle. Returns the spans of these words.
-    pub(super) fn parted(
+    pub(super) fn split_fields(
         &mut self,
         fields: &[tree::Field<'s>],
         block: &mut LoweredBlock<'s>,
@@ -73,7 +73,7 @@ impl<'s> Lowering<'s> {
         if !fields.iter().any(is_unknown) {
             return taken;
         }
-        for &(rows, names) in row.parted {
+        for &(rows, names) in row.split_words {
             for words in rows.split('|') {
                 let mut found: Vec<&tree::Field<'s>> = Vec::new();
                 for word in words.split(' ') {

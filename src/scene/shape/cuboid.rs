@@ -133,7 +133,10 @@ fn empty(block: &LoweredBlock<'_>, min: DVec3, max: DVec3, problems: &mut Proble
     let Some(((axis, low), high)) = axes.find(|((_, low), high)| low >= high) else {
         return;
     };
-    let (low, high) = (numbers::beside(low, &[high]), numbers::beside(high, &[low]));
+    let (low, high) = (
+        numbers::comparable(low, &[high]),
+        numbers::comparable(high, &[low]),
+    );
     let problem = error("empty_box", format!("the box has no extent along {axis}"));
     problems.push(match (block.given(BOX.min), block.given(BOX.max)) {
         (Some(low_given), Some(high_given)) => {

@@ -180,7 +180,7 @@ fn not_a_triangle(block: &LoweredBlock<'_>, sides: DVec3, problems: &mut Problem
         ("third", c, a, b)
     };
     let [a, b, c] = [a, b, c].map(short);
-    let longest = numbers::beside(longest, &[one + other]);
+    let longest = numbers::comparable(longest, &[one + other]);
     let [one, other] = [one, other].map(short);
     let message = format!("sides of {a}, {b} and {c} do not form a triangle");
     let label = format!("{longest} is not less than {one} + {other}");

@@ -24,7 +24,7 @@ use self::{point_query::visit_list, rectangle_query::Search, tree::Cells};
 use super::{camera::Direction, local_form::Patch};
 
 pub use self::grid::{BoundedObject, CellGrid, Nearness, Rectangle};
-pub use self::tree::OBJECTS_A_CELL;
+pub use self::tree::OBJECTS_PER_CELL;
 
 /// Quadtree over the bounds, in the view plane, of all objects that rays may hit.
 #[derive(Debug)]
@@ -72,10 +72,10 @@ impl Quadtree {
     }
 
     /// Returns the objects that rays through the rectangle `patch` of the view plane may hit, the
-    /// nearest first. Returns `None` if [`within`](Self::within) finds more than [`OBJECTS_A_CELL`]
-    /// objects.
+    /// nearest first. Returns `None` if [`within`](Self::within) finds more than
+    /// [`OBJECTS_PER_CELL`] objects.
     pub fn nearby(&self, patch: &Patch) -> Option<Vec<BoundedObject>> {
-        let mut items = self.within(patch, OBJECTS_A_CELL, |_| Nearness::NONE)?;
+        let mut items = self.within(patch, OBJECTS_PER_CELL, |_| Nearness::NONE)?;
         items.sort_by_key(|item| Reverse(item.nearest));
         Some(items)
     }

@@ -22,7 +22,7 @@ use std::ops::ControlFlow;
 use super::{
     candidates::{self, VisibilityCandidate},
     checker_corners::{self, CheckerPixel, ShownSquares},
-    quadtree::OBJECTS_A_CELL,
+    quadtree::OBJECTS_PER_CELL,
     world::World,
 };
 use crate::area::Area;
@@ -36,16 +36,16 @@ pub const GRID: u32 = checker_corners::SIDE as u32;
 /// quartered further. The value was chosen by measuring render times. With 8, the time for 10³ and
 /// 10⁵ spheres changes by less than 10 %, but 3000 slivers with one sample per pixel take twice as
 /// long. With 2, the time rises by up to 25 %.
-const SAMPLES_A_CANDIDATE: f64 = 4.0;
+const MIN_QUARTERING_RATIO: f64 = 4.0;
 
 /// Cost of finding out where one candidate object is seen within an area of pixels. The unit is the
-/// cost of testing one sample against one object. An area with more than [`OBJECTS_A_CELL`]
+/// cost of testing one sample against one object. An area with more than [`OBJECTS_PER_CELL`]
 /// candidates is quartered only if the cost for all its candidates is at most the cost of tracing
 /// all its samples one by one. Tracing a sample costs one unit for each object whose bounds contain
 /// it, and one unit for the search of the quadtree. The value was chosen by measuring render times.
 /// With 80, 10⁴ spheres on 320×180 pixels take 10 % longer; with 200, they take 2 % longer on
 /// 640×360 pixels.
-const ASKED_A_CANDIDATE: f64 = 120.0;
+const ASKED_PER_CANDIDATE: f64 = 120.0;
 
 /// Subdivision of one picture into parts.
 #[derive(Debug)]
@@ -64,7 +64,7 @@ pub enum PicturePart<'a> {
         /// The part's area.
         area: Area,
         /// Index of the colour in the palette.
-        slot: usize,
+        color_index: usize,
     },
     /// A pixel in which more than one colour may be seen.
     Pixel {
@@ -137,19 +137,20 @@ impl<'a> Quartering<'a> {
     }
 
     /// Returns whether quartering an area is expected to take less time than tracing its samples
-    /// one by one. With at most [`OBJECTS_A_CELL`] objects, always returns `true`. `objects` is the
-    /// number of objects that may be seen in the area. `asked` is the number of objects against
+    /// one by one. With at most [`OBJECTS_PER_CELL`] objects, always returns `true`. `objects` is
+    /// the number of objects that may be seen in the area. `asked` is the number of objects against
     /// which a sample would be tested, averaged over the area.
     fn is_worth_cutting(&self, area: Area, objects: usize, asked: f64) -> bool {
         let samples = self.samples * area.pixels() as f64;
-        objects <= OBJECTS_A_CELL || samples * (1.0 + asked) >= ASKED_A_CANDIDATE * objects as f64
+        objects <= OBJECTS_PER_CELL
+            || samples * (1.0 + asked) >= ASKED_PER_CANDIDATE * objects as f64
     }
 
     /// Returns the number of candidates above which an area is not quartered further. It is the
-    /// number of the area's samples divided by [`SAMPLES_A_CANDIDATE`], but at least the number of
+    /// number of the area's samples divided by [`MIN_QUARTERING_RATIO`], but at least the number of
     /// samples of one pixel.
     fn most(&self, area: Area) -> usize {
-        let shared = area.pixels() as f64 / SAMPLES_A_CANDIDATE;
+        let shared = area.pixels() as f64 / MIN_QUARTERING_RATIO;
         (self.samples * shared.max(1.0)) as usize
     }
 }
@@ -178,20 +179,20 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
         let world = self.quartering.world;
         match candidates {
             [] => {
-                let slot = world.background();
-                return self.show(PicturePart::OneColor { area, slot });
+                let color_index = world.background();
+                return self.show(PicturePart::OneColor { area, color_index });
             }
             [only] if only.is_whole => {
-                let slots = world.slots(only.object);
-                let [slot, second] = slots;
-                if slot == second {
-                    return self.show(PicturePart::OneColor { area, slot });
+                let color_indices = world.color_indices(only.object);
+                let [color_index, second] = color_indices;
+                if color_index == second {
+                    return self.show(PicturePart::OneColor { area, color_index });
                 }
                 let show = &mut |area: Area, seen: ShownSquares| {
                     let checks = match seen {
                         ShownSquares::One(odd) => {
-                            let slot = slots[usize::from(odd)];
-                            return self.show(PicturePart::OneColor { area, slot });
+                            let color_index = color_indices[usize::from(odd)];
+                            return self.show(PicturePart::OneColor { area, color_index });
                         }
                         // Samples can use the squares only if they are certain. Exact integration
                         // also accepts uncertain squares, whose errors it bounds.
@@ -216,9 +217,9 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
         }
         let is_worth_more = candidates.len() <= self.quartering.most(area);
         // A sample that is traced on its own is tested against the objects of a quadtree cell, up
-        // to `OBJECTS_A_CELL`. With at most this number of candidates, testing all of them is no
+        // to `OBJECTS_PER_CELL`. With at most this number of candidates, testing all of them is no
         // slower.
-        if !is_worth_more && candidates.len() > OBJECTS_A_CELL {
+        if !is_worth_more && candidates.len() > OBJECTS_PER_CELL {
             return self.show(PicturePart::Crowded { area });
         }
         if !is_worth_more || area.pixels() == 1 {
@@ -262,7 +263,9 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
             return ControlFlow::Continue(());
         }
         (self.visit)(match part {
-            PicturePart::OneColor { slot, .. } => PicturePart::OneColor { area, slot },
+            PicturePart::OneColor { color_index, .. } => {
+                PicturePart::OneColor { area, color_index }
+            }
             PicturePart::Crowded { .. } => PicturePart::Crowded { area },
             PicturePart::Pixel { .. } => part,
         })

@@ -128,11 +128,11 @@ fn of_a_crowd_the_objects_nearby_are_enough() {
             several += usize::from(only.is_none());
             for step in 0..9 {
                 let offset = DVec2::new(f64::from(step % 3 - 1), f64::from(step / 3 - 1)) * 0.49;
-                let seen = world.slot_at(x, y, offset);
-                assert_eq!(world.slot_near(x, y, offset, Some(&near)), seen);
+                let seen = world.color_index_at(x, y, offset);
+                assert_eq!(world.color_index_near(x, y, offset, Some(&near)), seen);
                 match only {
                     Some(only) => assert_eq!(only, seen),
-                    None => assert_eq!(world.slot_near(x, y, offset, Some(&narrowed)), seen),
+                    None => assert_eq!(world.color_index_near(x, y, offset, Some(&narrowed)), seen),
                 }
             }
         }

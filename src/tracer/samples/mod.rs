@@ -64,7 +64,7 @@ pub fn count(
     let alone = |pixel: &PreparedPixel, index: usize| {
         let offset = DVec2::new(x[index], y[index]);
         let objects = pixel.candidates.iter().map(|candidate| candidate.object);
-        world.slot_among(pixel.x, pixel.y, offset, objects)
+        world.color_index_among(pixel.x, pixel.y, offset, objects)
     };
     if pixel.is_hard {
         (0..samples).for_each(|index| count(alone(pixel, index), 1));
@@ -85,7 +85,7 @@ pub fn count(
     }
     for color in &pixel.colors {
         if color.count > 0 {
-            count(color.slot, color.count);
+            count(color.color_index, color.count);
         }
     }
 }
@@ -93,14 +93,14 @@ pub fn count(
 /// Replaces the pixel's list of colours by those that may be seen in the pixel, each with the count
 /// 0.
 fn may_see(world: &World, pixel: &mut PreparedPixel) {
-    let color = |code: f64, slot: usize| ColorCount {
+    let color = |code: f64, color_index: usize| ColorCount {
         code,
-        slot,
+        color_index,
         count: 0,
     };
     pixel.colors.clear();
     for surface in &pixel.surfaces {
-        let [first, second] = world.slots(pixel.candidates[surface.index].object);
+        let [first, second] = world.color_indices(pixel.candidates[surface.index].object);
         let codes = [false, true].map(|odd| surface.code(odd));
         match surface.pattern {
             ColorPattern::Plain(code) if code == codes[1] => pixel.colors.push(color(code, second)),

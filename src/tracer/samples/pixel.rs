@@ -51,7 +51,7 @@ pub(super) struct ColorCount {
     /// The code of the colour in [`Lanes::seen`].
     pub(super) code: f64,
     /// Index of the colour in the palette.
-    pub(super) slot: usize,
+    pub(super) color_index: usize,
     /// Number of samples that see the colour.
     pub(super) count: u64,
 }

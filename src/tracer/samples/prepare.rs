@@ -25,7 +25,7 @@ use crate::{area::Area, math::UP};
 /// errors of the forms' factors, so a factor is at most 2^51 times the bound. With this limit, the
 /// product of a factor and the index of a square (below 2^53) cannot overflow. If a bound is
 /// larger, the pixel's samples are traced one by one.
-const MAX_ERROR: f64 = 1e250;
+const MAX_FORM_ERROR: f64 = 1e250;
 
 /// Maximum number of lines between squares in a pixel for which a sample's colour is found by
 /// testing on which side of each line the sample lies. With more lines, a division computes which
@@ -83,7 +83,7 @@ impl PreparedPixel {
         surface.edges[1] = self.lines.len();
         surface.pattern = ColorPattern::Plain(surface.code(false));
         if let Object::Checkerboard(board) = object {
-            let [first, second] = world.slots(candidate.object);
+            let [first, second] = world.color_indices(candidate.object);
             if first != second {
                 surface.pattern = self.pattern(board, pixel, &surface)?;
             }
@@ -180,7 +180,8 @@ impl PreparedPixel {
     /// Returns how the colour of a checkerboard is found at the samples of a pixel. If the pixel
     /// shows only few squares, the colour is found from the signs of linear forms, one for each
     /// line between squares. If there are many squares, or if they could not be determined, a
-    /// division computes which square a sample hits. Fails if an error bound exceeds [`MAX_ERROR`].
+    /// division computes which square a sample hits. Fails if an error bound exceeds
+    /// [`MAX_FORM_ERROR`].
     fn pattern(
         &mut self,
         board: &Checkerboard<f64>,
@@ -190,7 +191,7 @@ impl PreparedPixel {
         let squares = CheckerForms::new(&board.local(&pixel.center, &pixel.sides));
         let CheckerForms { across, below, .. } = &squares;
         let sizes = [below, &across[0], &across[1]].map(|local| local.rad);
-        if !sizes.iter().all(|&rad| rad < MAX_ERROR) {
+        if !sizes.iter().all(|&rad| rad < MAX_FORM_ERROR) {
             return Err(Hard);
         }
         match squares.ranges() {

@@ -1,7 +1,7 @@
 //! The palette: the colours that can be seen, and the colours of each object.
 //!
 //! In: the objects and the background. Out: the palette, which is the list of distinct colours, and
-//! for each object the palette indices (slots) of its colours.
+//! for each object the palette indices of its colours.
 
 use std::collections::HashMap;
 
@@ -20,9 +20,9 @@ pub(super) struct Colors {
 impl Colors {
     pub(super) fn new(objects: &[scene::Object], background: Color) -> Self {
         let mut palette = Vec::new();
-        let mut slots = HashMap::new();
-        let mut slot = |color: Color| {
-            *slots
+        let mut color_indices = HashMap::new();
+        let mut color_index = |color: Color| {
+            *color_indices
                 .entry(color.srgb.map(f64::to_bits))
                 .or_insert_with(|| {
                     palette.push(color);
@@ -31,11 +31,11 @@ impl Colors {
                     (palette.len() - 1) as u32
                 })
         };
-        let slots_of = |object: &scene::Object| {
+        let color_indices_of = |object: &scene::Object| {
             let [first, second, _] = object.shape.colors();
-            [first, second].map(&mut slot)
+            [first, second].map(&mut color_index)
         };
-        let of_objects = objects.iter().map(slots_of).collect();
+        let of_objects = objects.iter().map(color_indices_of).collect();
         palette.push(background);
         Self {
             palette,

@@ -179,15 +179,15 @@ impl World {
     /// right and y down, each in [−1/2, 1/2). For a point outside of the picture, the answer may be
     /// wrong.
     #[inline]
-    pub fn slot_at(&self, x: u32, y: u32, offset: DVec2) -> usize {
-        self.slot_near(x, y, offset, None)
+    pub fn color_index_at(&self, x: u32, y: u32, offset: DVec2) -> usize {
+        self.color_index_near(x, y, offset, None)
     }
 
     /// Returns the palette index of the colour that is seen at a sample point, as
-    /// [`slot_at`](World::slot_at) does. The search is faster if `nearby` contains the objects near
-    /// the point, as [`nearby`](super::nearby) returns them.
+    /// [`color_index_at`](World::color_index_at) does. The search is faster if `nearby` contains
+    /// the objects near the point, as [`nearby`](super::nearby) returns them.
     #[inline]
-    pub(crate) fn slot_near(
+    pub(crate) fn color_index_near(
         &self,
         x: u32,
         y: u32,
@@ -196,8 +196,8 @@ impl World {
     ) -> usize {
         let point = self.geometry.fast.camera.sample_point(x, y, offset);
         match self.seen_fast(&point, nearby) {
-            Ok(seen) => self.slot(seen),
-            Err(Doubt) => self.slot_after_doubt(&point),
+            Ok(seen) => self.color_index(seen),
+            Err(Doubt) => self.color_index_after_doubt(&point),
         }
     }
 
@@ -226,8 +226,8 @@ impl World {
 
     /// Returns the palette index of the colour that would be seen at a sample point if the scene
     /// consisted only of the objects `among`, which are in file order. The other parameters are
-    /// those of [`slot_at`](World::slot_at).
-    pub fn slot_among(
+    /// those of [`color_index_at`](World::color_index_at).
+    pub fn color_index_among(
         &self,
         x: u32,
         y: u32,
@@ -235,10 +235,14 @@ impl World {
         among: impl Iterator<Item = usize> + Clone,
     ) -> usize {
         let point = self.geometry.fast.camera.sample_point(x, y, offset);
-        self.slot_of(&point, among)
+        self.color_index_of(&point, among)
     }
 
-    fn slot_of(&self, point: &PicturePoint, among: impl Iterator<Item = usize> + Clone) -> usize {
+    fn color_index_of(
+        &self,
+        point: &PicturePoint,
+        among: impl Iterator<Item = usize> + Clone,
+    ) -> usize {
         let among = || among.clone();
         let (mut seen, is_sure) = first_certain!(&self.geometry, point, |r| self.seen(r, among()));
         if !is_sure {
@@ -254,7 +258,7 @@ impl World {
                 (seen, _) = first_certain!(&self.geometry, point, |r| self.seen(r, among()));
             }
         }
-        self.slot(seen)
+        self.color_index(seen)
     }
 
     /// Returns which of the objects `among`, which are in file order, is seen at a point (`None`
@@ -280,8 +284,8 @@ impl World {
     ///
     /// Panics if there is no such object: `object` must be less than
     /// [`object_count`](Self::object_count).
-    pub fn slots(&self, object: usize) -> [usize; 2] {
-        self.colors.of_objects[object].map(|slot| slot as usize)
+    pub fn color_indices(&self, object: usize) -> [usize; 2] {
+        self.colors.of_objects[object].map(|color_index| color_index as usize)
     }
 
     /// Returns the palette index of the background.
@@ -326,8 +330,8 @@ impl World {
     }
 
     #[cold]
-    fn slot_after_doubt(&self, point: &PicturePoint) -> usize {
-        self.slot_of(point, self.candidates(point).iter().copied())
+    fn color_index_after_doubt(&self, point: &PicturePoint) -> usize {
+        self.color_index_of(point, self.candidates(point).iter().copied())
     }
 
     /// Returns the objects that the ray through a point may hit, in file order.
@@ -465,10 +469,10 @@ impl World {
     }
 
     #[inline]
-    pub(super) fn slot(&self, seen: Option<VisibleCrossing>) -> usize {
+    pub(super) fn color_index(&self, seen: Option<VisibleCrossing>) -> usize {
         match seen {
             None => self.background(),
-            Some(seen) => self.slots(seen.object)[usize::from(seen.odd)],
+            Some(seen) => self.color_indices(seen.object)[usize::from(seen.odd)],
         }
     }
 }

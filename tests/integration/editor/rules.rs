@@ -50,7 +50,7 @@ fn only_the_default_value_is_offered_as_the_default() {
 #[test]
 fn every_rule_between_fields_is_documented_at_one_of_them() {
     for row in BLOCKS {
-        for rule in row.together {
+        for rule in row.joint_conditions {
             let mut fields = row.fields.iter();
             let is_told = fields.any(|field| row.rules_of(field.name).any(|told| told == *rule));
             assert!(is_told, "{rule}");

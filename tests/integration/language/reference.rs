@@ -42,7 +42,7 @@ fn the_reference_lists_every_field_with_its_type_default_and_conditions() {
                 assert!(must.contains(&condition), "{place}: {condition}");
             }
         }
-        for together in kind.together {
+        for together in kind.joint_conditions {
             assert!(REFERENCE.contains(together), "{together}");
         }
     }

@@ -70,7 +70,7 @@ impl TracerAndOracle {
     }
 
     fn color(&self, x: u32, y: u32, offset: DVec2) -> [f64; 3] {
-        self.world.palette()[self.world.slot_at(x, y, offset)].srgb
+        self.world.palette()[self.world.color_index_at(x, y, offset)].srgb
     }
 
     /// Asserts that the tracer and the oracle (an independent tracer of high precision) see the

@@ -20,7 +20,7 @@ const PIXELS_PER_BLOCK: f64 = 64.0;
 /// Errors that a hypothesis about the program leaves in a picture, and that sampling cannot
 /// explain.
 #[derive(Debug, Default)]
-pub struct Strays {
+pub struct UnexplainedErrors {
     /// Indices of the pixels that should show one colour, but show a different one. Pixels are not
     /// included if an edge that is displaced by half a pixel can explain the difference.
     pub pixels: Vec<usize>,
@@ -32,7 +32,7 @@ pub struct Strays {
     edges: Vec<(usize, f64, f64)>,
 }
 
-impl Strays {
+impl UnexplainedErrors {
     /// Returns the sum of the squared differences that sampling cannot explain. A pixel that should
     /// show one colour contributes its whole squared difference. A pixel that mixes several colours
     /// contributes its squared difference minus the variance of one sample.
@@ -79,24 +79,26 @@ fn is_noise((squares, expected): (f64, f64)) -> bool {
 
 impl Prediction<'_> {
     /// Finds the errors of the picture that sampling cannot explain.
-    pub fn strays(&self) -> Strays {
-        let mut strays = Strays::default();
+    pub fn unexplained_errors(&self) -> UnexplainedErrors {
+        let mut unexplained_errors = UnexplainedErrors::default();
         for at in 0..self.observed.len() {
             let (difference, allowed) = (self.difference(at), self.allowed(at));
             let squares = difference * difference;
             if self.is_flat(at) {
                 let beyond = difference.abs() - allowed;
                 if beyond.max_element() > 0.0 && beyond.cmpgt(self.reach(at)).any() {
-                    strays.pixels.push(at);
-                    strays.square += squares.element_sum();
+                    unexplained_errors.pixels.push(at);
+                    unexplained_errors.square += squares.element_sum();
                 }
             } else {
                 let beyond = (squares - allowed * allowed).max(DVec3::ZERO);
                 let expected = self.moments.variance[at].element_sum();
-                strays.edges.push((at, beyond.element_sum(), expected));
+                unexplained_errors
+                    .edges
+                    .push((at, beyond.element_sum(), expected));
             }
         }
-        strays
+        unexplained_errors
     }
 
     /// Returns whether the pixels of some group in a JPEG are too bright or too dark on average.
