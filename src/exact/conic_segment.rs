@@ -213,9 +213,9 @@ impl Homography {
 
     fn cut_at_lines(&self, arc: &Arc, lines: [(f64, f64); 2], chords: &mut Chords) {
         let points = [arc.start, arc.control, arc.end];
-        let below = points.map(|p| form(&self.below, p));
+        let below = points.map(|p| form(&self.denominator, p));
         let mut cuts = vec![1.0];
-        for (across, (first, last)) in self.across.iter().zip(lines) {
+        for (across, (first, last)) in self.numerators.iter().zip(lines) {
             let values = points.map(|p| form(across, p));
             let mut line = first;
             while line <= last {
@@ -231,9 +231,9 @@ impl Homography {
             if cut > before {
                 let piece = arc.between(before, cut);
                 let middle = piece.at(0.5);
-                let depth = 1.0 / form(&self.below, middle);
+                let depth = 1.0 / form(&self.denominator, middle);
                 let [a, b] = self
-                    .across
+                    .numerators
                     .map(|across| square_wave(form(&across, middle) * depth));
                 let mut segment = over_one_square(piece.bounded_area(), a * b);
                 // Rounding errors of the forms displace the lines of the board, which changes the
@@ -267,7 +267,7 @@ impl Homography {
     fn lines(&self, arc: &Arc, family: usize) -> Option<(f64, f64)> {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for p in [arc.start, arc.control, arc.end] {
-            let level = form(&self.below, p);
+            let level = form(&self.denominator, p);
             if level <= 0.0 {
                 return None;
             }

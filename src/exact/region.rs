@@ -258,7 +258,7 @@ impl LocalBoard {
         let camera = &T::frame(&world.geometry).camera;
         let side = camera.pitch.times(&T::from_f64(sub_pixel.side));
         let seen = board.local(&sub_pixel.middle(camera), &[side.clone(), side]);
-        let forms = [seen.across[0], seen.across[1], seen.below].into_iter();
+        let forms = [seen.numerators[0], seen.numerators[1], seen.denominator].into_iter();
         let errors = forms.zip(seen.rads).map(|(form, rad)| {
             // If squares are extremely small, the factors of the forms may overflow or underflow in
             // `f64`. The error is then infinite.
@@ -267,7 +267,7 @@ impl LocalBoard {
             if is_known { rad / size } else { f64::INFINITY }
         });
         Some(Self {
-            board: Homography::new(seen.across, seen.below),
+            board: Homography::new(seen.numerators, seen.denominator),
             odd: seen.odd,
             relative_error: errors.fold(0.0, f64::max),
         })

@@ -6,7 +6,7 @@ use super::{
     hypotheses::{Candidate, Mistake, Shows, mistakes, parameters},
     objects,
     scoring::WRONG,
-    search::{Judge, Judged},
+    search::{Judge, JudgedCandidate},
     verdict::{Kind, NamedMistake, Verdict},
 };
 use crate::{
@@ -49,7 +49,7 @@ const PARALLEL_OF_OWN_SIZE: &str =
 
 /// Returns the verdict on a picture. `found` is the result of the search: the best hypothesis about
 /// the program that made the picture, and whether this hypothesis explains the picture.
-pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Verdict {
+pub fn conclude(judge: &Judge, film: &Film, found: Option<(JudgedCandidate, bool)>) -> Verdict {
     let (scene, jpeg) = (judge.scene, judge.fine.jpeg);
     let right = Candidate::correct(scene);
     // A search that explained the picture is complete, even if it used up its budget of work. So
@@ -183,7 +183,7 @@ fn attributed(judge: &Judge, last: &Candidate, is_explained: bool) -> Vec<NamedM
 
 /// Returns the verdict for a hypothesis with mistakes. If the mistakes together explain the picture
 /// and are plausible, they are named. Otherwise, they are reported as guesses.
-fn with_mistakes(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
+fn with_mistakes(judge: &Judge, found: &JudgedCandidate, is_explained: bool) -> Verdict {
     let (scene, last) = (judge.scene, found.candidate());
     let mut mistakes = attributed(judge, last, is_explained);
     let square = |candidate: &Candidate| {

@@ -14,7 +14,7 @@ use crate::{
 
 /// The parameter `view`. If `eye` and `lookat` are missing, the server chooses them.
 #[derive(Deserialize)]
-struct View {
+struct ViewParams {
     eye: Option<[f64; 3]>,
     lookat: Option<[f64; 3]>,
     from: Option<[f64; 3]>,
@@ -30,7 +30,7 @@ struct View {
 ///
 /// Returns an error if no camera of the language can have these values.
 pub fn observer(params: &Value, scene: &Scene) -> Result<Option<Observer>, Refusal> {
-    let Some(view) = optional::<View>(params, "view")? else {
+    let Some(view) = optional::<ViewParams>(params, "view")? else {
         return Ok(None);
     };
     let up = view.up.map_or(DVec3::Y, DVec3::from);

@@ -14,10 +14,10 @@ pub const NUMBER: Number = Number { bits: 256 };
 /// picture to the board. Each form is given by its three coefficients.
 pub struct ExactBoard {
     /// The linear forms N_a and N_b. The point (x, y) of the picture shows the point (N_a/L, N_b/L)
-    /// of the board, in squares, where L is the form `below`.
-    pub across: [[N; 3]; 2],
+    /// of the board, in squares, where L is the form `denominator`.
+    pub numerators: [[N; 3]; 2],
     /// The linear form L, the denominator of the coordinates N_a/L and N_b/L on the board.
-    pub below: [N; 3],
+    pub denominator: [N; 3],
 }
 
 /// A point of the picture.
@@ -28,24 +28,26 @@ impl ExactBoard {
     /// Each coefficient is multiplied by 1 + k·u, where k is the corresponding entry of
     /// `roundings`, from −1 to 1, and u is the unit roundoff of `f64`.
     pub fn of_rounded(forms: [[f64; 3]; 3], roundings: [[f64; 3]; 3]) -> Self {
-        let [a, b, below] = [0, 1, 2].map(|i| {
+        let [a, b, denominator] = [0, 1, 2].map(|i| {
             [0, 1, 2].map(|k| {
                 let rounding = NUMBER.exact(roundings[i][k] * f64::UNIT);
                 NUMBER.exact(forms[i][k]) * (NUMBER.exact(1.0) + rounding)
             })
         });
-        let across = [a, b];
-        Self { across, below }
+        Self {
+            numerators: [a, b],
+            denominator,
+        }
     }
 
     /// Integrates the board's sign, +1 on even and −1 on odd squares, over a convex polygon with
-    /// corners in `f64`. The denominator `below` must be positive on the polygon.
+    /// corners in `f64`. The denominator must be positive on the polygon.
     pub fn integral(&self, polygon: &[DVec2]) -> N {
         self.integral_of(polygon.iter().copied().map(point).collect())
     }
 
     /// Integrates the board's sign, +1 on even and −1 on odd squares, over a convex polygon with
-    /// corners of any precision. The denominator `below` must be positive on the polygon.
+    /// corners of any precision. The denominator must be positive on the polygon.
     pub fn integral_of(&self, polygon: Vec<Point>) -> N {
         let mut sum = N::ZERO;
         self.strips(0, polygon, &mut |row, strip| {
@@ -75,9 +77,9 @@ impl ExactBoard {
     /// the index `family` is an integer. Calls `visit` with each strip, and with the integer of the
     /// grid line at the strip's start.
     fn strips(&self, family: usize, polygon: Vec<Point>, visit: &mut dyn FnMut(&IBig, Vec<Point>)) {
-        let across = &self.across[family];
+        let numerator = &self.numerators[family];
         let square = |p: &Point| {
-            (form(across, p) / form(&self.below, p))
+            (form(numerator, p) / form(&self.denominator, p))
                 .floor()
                 .to_int()
                 .value()
@@ -89,7 +91,7 @@ impl ExactBoard {
         while rest.len() > 2 {
             let next = &first + IBig::ONE;
             let n = N::from(next.clone()).with_precision(NUMBER.bits).value();
-            let line = [0, 1, 2].map(|k| &across[k] - &n * &self.below[k]);
+            let line = [0, 1, 2].map(|k| &numerator[k] - &n * &self.denominator[k]);
             let [before, beyond] = split(&rest, &line);
             if before.len() > 2 {
                 visit(&first, before);

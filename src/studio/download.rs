@@ -127,7 +127,7 @@ pub struct Sliced {
     asked: Asked,
     /// Index of the picture that is being rendered.
     index: usize,
-    picture: Rendering,
+    picture: UnfinishedPicture,
     /// The animation, to which finished pictures are added. `None` before the first picture is
     /// finished, and if the file is a single picture.
     animation: Option<Animation>,
@@ -135,13 +135,13 @@ pub struct Sliced {
 
 /// A picture that is being rendered.
 #[derive(Debug)]
-struct Rendering {
+struct UnfinishedPicture {
     text: String,
     world: World,
     slices: Slices<[u8; 3]>,
 }
 
-impl Rendering {
+impl UnfinishedPicture {
     fn new(asked: &Asked, index: usize) -> Result<Self, Refusal> {
         let (scene, text) = asked.scene(index)?;
         let size = [scene.image.width, scene.image.height];
@@ -168,7 +168,7 @@ impl Sliced {
             let asked = Asked::read(&request.params)?;
             Ok(Self {
                 request: request.id.clone(),
-                picture: Rendering::new(&asked, 0)?,
+                picture: UnfinishedPicture::new(&asked, 0)?,
                 asked,
                 index: 0,
                 animation: None,
@@ -194,7 +194,7 @@ impl Sliced {
 
     /// Renders a slice. Returns the file if the slice was the last one, and otherwise `None`.
     fn slice(&mut self) -> Result<Option<Vec<u8>>, Refusal> {
-        let Rendering {
+        let UnfinishedPicture {
             text,
             world,
             slices,
@@ -215,7 +215,7 @@ impl Sliced {
         animation.add(film).map_err(Refusal::failed)?;
         self.index += 1;
         if self.index < self.asked.count() {
-            self.picture = Rendering::new(&self.asked, self.index)?;
+            self.picture = UnfinishedPicture::new(&self.asked, self.index)?;
             return Ok(None);
         }
         let animation = self.animation.take();

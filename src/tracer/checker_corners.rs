@@ -148,11 +148,11 @@ impl BoardBlock {
     /// Prepares a block of pixels. Returns `None` if the board is too far away for its squares to
     /// be distinguished.
     fn new(squares: CheckerForms, block: Area) -> Option<Self> {
-        let CheckerForms { across, .. } = squares;
+        let CheckerForms { numerators, .. } = squares;
         let least = squares.least()?;
-        let slack = across.map(|across| {
-            let greatest = (across.factors[2].abs() + across.spread() + across.rad) / least;
-            squares.slack(&across, greatest, least)
+        let slack = numerators.map(|form| {
+            let greatest = (form.factors[2].abs() + form.spread() + form.rad) / least;
+            squares.slack(&form, greatest, least)
         });
         if !slack.iter().all(|&slack| slack < MAX_COORDINATE_ERROR) {
             return None;
@@ -178,8 +178,12 @@ impl BoardBlock {
     #[inline(always)]
     fn evaluate(&self, y: f64, length: usize, out: &mut CornerRow) {
         const ONE: u64 = 1.0f64.to_bits();
-        let CheckerForms { across, below, .. } = &self.squares;
-        let [n0, n1, l] = [&across[0], &across[1], below].map(|local| {
+        let CheckerForms {
+            numerators,
+            denominator,
+            ..
+        } = &self.squares;
+        let [n0, n1, l] = [&numerators[0], &numerators[1], denominator].map(|local| {
             let [a, b, c] = local.factors;
             (a, b * y + c)
         });
@@ -280,19 +284,23 @@ impl BoardBlock {
             // errors of the three factors computed here.
             LocalForm::new([a / width, b / height, a * x + b * y + c], 2.0 * block.rad)
         };
-        let CheckerForms { across, below, odd } = &self.squares;
-        let below = local(below);
-        let mut across = across.each_ref().map(local);
+        let CheckerForms {
+            numerators,
+            denominator,
+            odd,
+        } = &self.squares;
+        let denominator = local(denominator);
+        let mut numerators = numerators.each_ref().map(local);
         if !is_certain {
-            let greatest = below.factors[2].abs() + below.spread();
-            for (across, doubt) in across.iter_mut().zip(doubt) {
-                across.rad += doubt * greatest * UP;
+            let greatest = denominator.factors[2].abs() + denominator.spread();
+            for (numerator, doubt) in numerators.iter_mut().zip(doubt) {
+                numerator.rad += doubt * greatest * UP;
             }
         }
         Some(CheckerPixel {
             squares: CheckerForms {
-                across,
-                below,
+                numerators,
+                denominator,
                 odd: *odd,
             },
             corners: [0, 1].map(|axis| corners.map(|corner| corner[axis])),
@@ -317,8 +325,9 @@ impl BoardBlock {
             let y = middle(2 * (row + place as u32 / 2), self.block.height);
             for axis in 0..2 {
                 if corner[axis].is_nan() {
-                    corner[axis] =
-                        floor(self.squares.across[axis].at(x, y) / self.squares.below.at(x, y));
+                    corner[axis] = floor(
+                        self.squares.numerators[axis].at(x, y) / self.squares.denominator.at(x, y),
+                    );
                     // The corner is uncertain, so its computed coordinate is at most `slack` from a
                     // line between squares. The true coordinate is at most `slack` from the
                     // computed one, so it is at most twice `slack` from the line.
@@ -377,12 +386,12 @@ fn compare_simd(above: &CornerRow, below: &CornerRow, out: &mut [f64; SIDE]) {
 }
 
 /// The position on a checkerboard as ratios of linear forms: x = N₀/ℓ and z = N₁/ℓ, in squares. x
-/// and z rounded down are the indices of a square. `across` contains N₀ and N₁, and `below` is ℓ.
-/// `odd` is `true` if the square with the indices (0, 0) has the second colour.
+/// and z rounded down are the indices of a square. `numerators` are N₀ and N₁, and `denominator`
+/// is ℓ. `odd` is `true` if the square with the indices (0, 0) has the second colour.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CheckerForms {
-    pub(crate) across: [LocalForm; 2],
-    pub(crate) below: LocalForm,
+    pub(crate) numerators: [LocalForm; 2],
+    pub(crate) denominator: LocalForm,
     pub(crate) odd: bool,
 }
 
@@ -392,29 +401,29 @@ const CORNERS: [(f64, f64); 4] = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 
 
 impl CheckerForms {
     pub(super) fn new(board: &LocalBoard) -> Self {
-        let [a, b, below] = board.rads;
+        let [a, b, l] = board.rads;
         Self {
-            across: [
-                LocalForm::new(board.across[0], a),
-                LocalForm::new(board.across[1], b),
+            numerators: [
+                LocalForm::new(board.numerators[0], a),
+                LocalForm::new(board.numerators[1], b),
             ],
-            below: LocalForm::new(board.below, below),
+            denominator: LocalForm::new(board.denominator, l),
             odd: board.odd,
         }
     }
 
-    /// Returns the least value of the form `below` over the rectangle. This form is the denominator
-    /// of the board's coordinates. Returns `None` if the value is not clearly positive.
+    /// Returns the least value of the denominator of the board's coordinates over the rectangle.
+    /// Returns `None` if it is not clearly positive.
     fn least(&self) -> Option<f64> {
-        let least = self.below.factors[2] - self.below.spread() * UP;
-        (least > MIN_CLEARANCE * self.below.rad).then_some(least)
+        let least = self.denominator.factors[2] - self.denominator.spread() * UP;
+        (least > MIN_CLEARANCE * self.denominator.rad).then_some(least)
     }
 
-    /// Returns an upper bound of the error of the board coordinate whose numerator is `across` and
-    /// whose denominator is the form `below`. `greatest` is the maximum absolute value of the
-    /// coordinate, and `least` the minimum of the denominator.
-    fn slack(&self, across: &LocalForm, greatest: f64, least: f64) -> f64 {
-        let inherited = (across.rad + greatest * self.below.rad) * MIN_CLEARANCE / least;
+    /// Returns an upper bound of the error of the board coordinate whose numerator is `numerator`.
+    /// `greatest` is the maximum absolute value of the coordinate, and `least` the minimum of the
+    /// denominator.
+    fn slack(&self, numerator: &LocalForm, greatest: f64, least: f64) -> f64 {
+        let inherited = (numerator.rad + greatest * self.denominator.rad) * MIN_CLEARANCE / least;
         (inherited + (greatest + 1.0) * LOCAL_ROUNDING) * UP
     }
 
@@ -423,18 +432,18 @@ impl CheckerForms {
     /// board's coordinates is not clearly positive or an error is too large.
     pub(super) fn ranges(&self) -> Option<[(f64, f64); 2]> {
         let least = self.least()?;
-        let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));
-        let [x, z] = self.across.each_ref().map(|across| {
+        let inverse = CORNERS.map(|(x, y)| 1.0 / self.denominator.at(x, y));
+        let [x, z] = self.numerators.each_ref().map(|numerator| {
             // A ratio of linear forms has its extremes over the rectangle at the rectangle's
             // corners, so it is evaluated only there.
             let values: [f64; 4] = array::from_fn(|i| {
                 let (x, y) = CORNERS[i];
-                across.at(x, y) * inverse[i]
+                numerator.at(x, y) * inverse[i]
             });
             let low = values.into_iter().fold(f64::INFINITY, f64::min);
             let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
             let size = low.abs().max(high.abs());
-            let slack = self.slack(across, size, least);
+            let slack = self.slack(numerator, size, least);
             (slack < MAX_COORDINATE_ERROR).then(|| (floor(low - slack), floor(high + slack)))
         });
         Some([x?, z?])

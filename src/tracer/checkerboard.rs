@@ -33,12 +33,12 @@ pub struct Checkerboard<T: Real> {
     pub plane: Convex<T>,
     /// Inverse depth ℓ of the board's plane, a linear form ([`Form`]) over the view plane. It is
     /// scaled by the power of two that brings the height of the eye above the plane to about 1.
-    /// `across` has the same scale.
-    pub below: Form<T>,
+    /// `numerators` have the same scale.
+    pub denominator: Form<T>,
     /// Numerators N of the board's coordinates x and z, linear forms ([`Form`]) over the view
-    /// plane. N/ℓ, where ℓ is `below`, is the coordinate in squares, measured from the line between
-    /// squares that is nearest to the eye.
-    pub across: [Form<T>; 2],
+    /// plane. N/ℓ, where ℓ is `denominator`, is the coordinate in squares, measured from the line
+    /// between squares that is nearest to the eye.
+    pub numerators: [Form<T>; 2],
     /// Whether the square from (0, 0) to (1, 1) in the board's coordinates has the second colour.
     /// The coordinates are measured from the two lines that are nearest to the eye, one in x and
     /// one in z. The square has the second colour if the sum of these lines' numbers, counted from
@@ -56,9 +56,9 @@ pub struct LocalBoard {
     /// Factors of x, y and 1 in N₀ and N₁, the numerators of the board's coordinates N₀/ℓ and N₁/ℓ.
     /// In the highest precision, factors may exceed the range of `f64`. N₀, N₁ and ℓ are then
     /// multiplied by the same power of two, which brings the largest factor to about 1.
-    pub across: [[f64; 3]; 2],
+    pub numerators: [[f64; 3]; 2],
     /// Factors of x, y and 1 in ℓ, the denominator of the board's coordinates.
-    pub below: [f64; 3],
+    pub denominator: [f64; 3],
     /// Error bounds of N₀, N₁ and ℓ at all points of the rectangle. The board's coordinates are
     /// N₀/ℓ and N₁/ℓ. The rounding of the factors to `f64` is not included.
     pub rads: [f64; 3],
@@ -96,9 +96,9 @@ impl<T: Real> Checkerboard<T> {
             Form::new(camera, &v)
         };
         Some(Self {
-            below: inverse_depth(camera, &axis_vector(1), &h),
+            denominator: inverse_depth(camera, &axis_vector(1), &h),
             plane: Convex::new(Vec::new(), vec![(0, plane)], Vec::new()),
-            across: [numerator(0, &x), numerator(2, &z)],
+            numerators: [numerator(0, &x), numerator(2, &z)],
             odd: x.odd != z.odd,
         })
     }
@@ -109,10 +109,10 @@ impl<T: Real> Checkerboard<T> {
     /// the colour uncertain.
     #[inline]
     pub fn is_odd(&self, r: &Direction<T>) -> Result<bool, Doubt> {
-        let below = self.below.at(r);
+        let denominator = self.denominator.at(r);
         let mut odd = self.odd;
-        for numerator in &self.across {
-            let (_, odd_here) = (numerator.at(r) / &below).floor()?;
+        for numerator in &self.numerators {
+            let (_, odd_here) = (numerator.at(r) / &denominator).floor()?;
             odd ^= odd_here;
         }
         Ok(odd)
@@ -131,12 +131,13 @@ impl<T: Real> Checkerboard<T> {
             let factors = [a.times(&sides[0]), b.times(&sides[1]), form.at(center).mid];
             (factors, form.rad())
         };
-        let (below, rad) = local(&self.below);
-        let [x, y] = [&below[0], &below[1]].map(|slope| 0.5_f64.copysign(slope.to_f64()));
+        let (denominator, rad) = local(&self.denominator);
+        let [x, y] =
+            [&denominator[0], &denominator[1]].map(|slope| 0.5_f64.copysign(slope.to_f64()));
         let corner = |[a, b, c]: &[T; 3]| a.to_f64() * x + b.to_f64() * y + c.to_f64();
-        let highest = corner(&below);
+        let highest = corner(&denominator);
         let mut odd = self.odd;
-        let [a, b] = self.across.each_ref().map(|form| {
+        let [a, b] = self.numerators.each_ref().map(|form| {
             let (factors, own_rad) = local(form);
             let times = (corner(&factors) / highest).round();
             if !(times.abs() < MOST_SQUARES && highest > 0.0) {
@@ -144,13 +145,13 @@ impl<T: Real> Checkerboard<T> {
             }
             odd ^= times as i64 & 1 == 1;
             let multiple = T::from_f64(times);
-            let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&multiple)));
+            let factors = [0, 1, 2].map(|i| factors[i].minus(&denominator[i].times(&multiple)));
             // The error of ℓ is at most `rad`, and is multiplied by `times`. The product and the
             // difference are rounded, too. These errors are smaller, because `rad` is large enough
             // for 12 roundings of ℓ. Twice `rad` · |`times`| therefore covers all of them.
             (factors, own_rad + rad * (2.0 * times.abs()))
         });
-        let mut forms = [a, b, (below, rad)];
+        let mut forms = [a, b, (denominator, rad)];
         if T::LAST {
             let sizes = forms.iter().flat_map(|(factors, _)| factors);
             let size = sizes.fold(T::Radius::ZERO, |size, factor| size.max(factor.magnitude()));
@@ -160,10 +161,10 @@ impl<T: Real> Checkerboard<T> {
             }
         }
         let rads = forms.each_ref().map(|(_, rad)| rad.to_f64());
-        let [a, b, below] = forms.map(|(factors, _)| factors.each_ref().map(Real::to_f64));
+        let [a, b, denominator] = forms.map(|(factors, _)| factors.each_ref().map(Real::to_f64));
         LocalBoard {
-            across: [a, b],
-            below,
+            numerators: [a, b],
+            denominator,
             rads,
             odd,
         }
@@ -175,8 +176,8 @@ impl Checkerboard<Double> {
     pub fn narrowed(&self, window: &Window<f64>) -> Checkerboard<f64> {
         Checkerboard {
             plane: self.plane.narrowed(window),
-            below: self.below.narrowed(window),
-            across: self.across.each_ref().map(|form| form.narrowed(window)),
+            denominator: self.denominator.narrowed(window),
+            numerators: self.numerators.each_ref().map(|form| form.narrowed(window)),
             odd: self.odd,
         }
     }

@@ -94,9 +94,9 @@ pub struct DecimalRounding {
     /// Number of decimals to which a changed number is rounded. A negative number means rounding to
     /// tens, hundreds and so on.
     decimals: i32,
-    /// Absolute values of the changes that [`together`] has rounded already. A number that changes
-    /// by one of these amounts is not rounded to `decimals` again, because points of the object
-    /// that are not dragged would then move slightly.
+    /// Absolute values of the changes that [`rounded_in_ratio`] has rounded already. A number that
+    /// changes by one of these amounts is not rounded to `decimals` again, because points of the
+    /// object that are not dragged would then move slightly.
     exact: Vec<f64>,
 }
 

@@ -60,10 +60,10 @@ pub(in crate::exact) struct BoundedSum {
 pub(in crate::exact) struct Homography {
     /// The linear forms N_a and N_b, the numerators of the floor's coordinates a = N_a/L and b =
     /// N_b/L.
-    pub across: [[f64; 3]; 2],
+    pub numerators: [[f64; 3]; 2],
     /// The linear form L, the denominator of the floor's coordinates; 0 on the horizon. It is
     /// scaled by a power of two so that its largest factor is between 1 and 2.
-    pub below: [f64; 3],
+    pub denominator: [f64; 3],
     /// Derivatives ∂m/∂a and ∂m/∂b of the depth m = 1/L with respect to the floor's coordinates a
     /// and b.
     pub slope: [f64; 2],
@@ -82,11 +82,11 @@ pub(in crate::exact) struct Homography {
     /// Unit vector along the horizon.
     horizon: DVec2,
     /// Coefficients d and e, in pixels. Rounding errors displace a point by at most d + e·L
-    /// perpendicular to the horizon. L is the value of the form `below` at the point; it is 0 on
-    /// the horizon.
+    /// perpendicular to the horizon. L is the value of the form `denominator` at the point; it is 0
+    /// on the horizon.
     across_horizon: [f64; 2],
-    /// Maximum value of the form `below`, which is 0 on the horizon, at which a point is treated as
-    /// lying on the horizon. A value up to this maximum may be only a rounding error.
+    /// Maximum value of the form `denominator`, which is 0 on the horizon, at which a point is
+    /// treated as lying on the horizon. A value up to this maximum may be only a rounding error.
     horizon_tolerance: f64,
 }
 
@@ -163,27 +163,30 @@ fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
 }
 
 impl Homography {
-    /// Derives the homography from the three linear forms of [`Homography`]. `across` contains the
-    /// forms of the two numerators, and `below` is the form of the common denominator. Multiplying
-    /// all three forms by the same positive factor changes nothing, because only their quotients
-    /// are used. The error bounds are smallest if the origin of the floor's coordinates is near the
-    /// part of the floor that the pixel shows.
-    pub fn new(across: [[f64; 3]; 2], below: [f64; 3]) -> Self {
-        let (below, scale) = normalized(below);
-        let across = across.map(|form| form.map(|c| libm::ldexp(c, -scale)));
+    /// Derives the homography from the three linear forms of [`Homography`]. Multiplying all three
+    /// forms by the same positive factor changes nothing, because only their quotients are used.
+    /// The error bounds are smallest if the origin of the floor's coordinates is near the part of
+    /// the floor that the pixel shows.
+    pub fn new(numerators: [[f64; 3]; 2], denominator: [f64; 3]) -> Self {
+        let (denominator, scale) = normalized(denominator);
+        let numerators = numerators.map(|form| form.map(|c| libm::ldexp(c, -scale)));
         // Squares may be of any size. N_a and N_b are therefore scaled like L, each by its own
         // power of two, before the matrix is inverted.
-        let [(a, of_a), (b, of_b)] = across.map(normalized);
+        let [(a, of_a), (b, of_b)] = numerators.map(normalized);
         // The columns of the adjugate det M·M⁻¹, where M is the matrix of the three forms. Each
         // component is accurate to two roundings of its own value.
-        let columns = [cross(&b, &below), cross(&below, &a), cross(&a, &b)];
-        let det = determinant(&a, &b, &below);
+        let columns = [
+            cross(&b, &denominator),
+            cross(&denominator, &a),
+            cross(&a, &b),
+        ];
+        let det = determinant(&a, &b, &denominator);
         let is_singular = det.abs() <= MIN_DETERMINANT;
         let det = if is_singular { MIN_DETERMINANT } else { det };
         let products: f64 = (0..3)
             .map(|i| {
                 let [j, k] = [(i + 1) % 3, (i + 2) % 3];
-                below[i].abs() * ((a[j] * b[k]).abs() + (a[k] * b[j]).abs())
+                denominator[i].abs() * ((a[j] * b[k]).abs() + (a[k] * b[j]).abs())
             })
             .sum();
         // Returns the maximum relative error of 1/det M, where M is the matrix of the three forms.
@@ -200,8 +203,8 @@ impl Homography {
         // The value of a linear form is computed with three roundings of its terms, and the
         // quotient of two forms with one more rounding. Each form is therefore given an error of
         // four roundings.
-        let errors = [a, b, below].map(|form| 4.0 * UNIT * size(&form));
-        let steepness = libm::hypot(below[0], below[1]);
+        let errors = [a, b, denominator].map(|form| 4.0 * UNIT * size(&form));
+        let steepness = libm::hypot(denominator[0], denominator[1]);
         // Errors e of the forms displace a point by v = M⁻¹·e, where M is the matrix of the three
         // forms. The rounding errors of the point's own coordinates displace it by up to four unit
         // roundoffs, the initial value of `displacement`.
@@ -212,8 +215,8 @@ impl Homography {
             tilt += error * column[2].abs() / volume;
         }
         Self {
-            across,
-            below,
+            numerators,
+            denominator,
             slope: [(0, of_a), (1, of_b)].map(|(i, by)| libm::ldexp(columns[i][2] / det, -by)),
             // If a form has overflowed, its exponent `of_a` or `of_b` is `i32::MAX`. The saturating
             // subtraction avoids an integer overflow. The result does not matter, because the
@@ -222,7 +225,7 @@ impl Homography {
             density_error: det_off(Double::UNIT),
             orientation: det.signum(),
             displacement,
-            horizon: DVec2::new(below[1], -below[0]) / steepness,
+            horizon: DVec2::new(denominator[1], -denominator[0]) / steepness,
             across_horizon: [errors[2] / steepness + 4.0 * UNIT, tilt / steepness],
             horizon_tolerance: if displacement <= MAX_HORIZON_DISPLACEMENT {
                 0.5 * errors[2]
@@ -233,10 +236,10 @@ impl Homography {
     }
 
     /// Cuts a convex polygon at the horizon and returns the part that shows the floor, where the
-    /// linear form L ([`Self::below`], 0 on the horizon) is not negative.
+    /// linear form L ([`Self::denominator`], 0 on the horizon) is not negative.
     pub(super) fn visible(&self, polygon: &[DVec2]) -> VisiblePart {
         let (mut above, mut visible) = (Vec::new(), Vec::with_capacity(polygon.len() + 1));
-        let level = |at| form(&self.below, at);
+        let level = |at| form(&self.denominator, at);
         let horizon = split(polygon, level, &mut above, &mut visible);
         VisiblePart {
             polygon: visible,
@@ -253,9 +256,9 @@ impl Homography {
         let level = if visible.horizon.is_some_and(is_on_horizon) {
             0.0
         } else {
-            form(&self.below, at)
+            form(&self.denominator, at)
         };
-        let floor = self.across.map(|across| form(&across, at));
+        let floor = self.numerators.map(|numerator| form(&numerator, at));
         let depth = if level <= self.horizon_tolerance {
             f64::INFINITY
         } else {
@@ -275,17 +278,17 @@ impl Homography {
     /// Returns whether the point `at` lies below the horizon, but so close to it that
     /// [`Self::corner`] treats it as lying on the horizon.
     pub(super) fn is_set_on_horizon(&self, at: DVec2) -> bool {
-        let level = form(&self.below, at);
+        let level = form(&self.denominator, at);
         level > 0.0 && level <= self.horizon_tolerance
     }
 
     /// Returns one coordinate, in squares, of the point of the floor that the point `at` of the
     /// picture shows, and the coordinate's maximum rounding error. `axis` is 0 for the first
-    /// coordinate and 1 for the second. `level` is the value of the form `below` at `at`, the
+    /// coordinate and 1 for the second. `level` is the value of the form `denominator` at `at`, the
     /// denominator of the coordinates, and must be greater than 0.
     pub(in crate::exact) fn place(&self, axis: usize, at: DVec2, level: f64) -> (f64, f64) {
-        let place = form(&self.across[axis], at) / level;
-        let terms = size(&self.across[axis]) + place.abs() * size(&self.below);
+        let place = form(&self.numerators[axis], at) / level;
+        let terms = size(&self.numerators[axis]) + place.abs() * size(&self.denominator);
         // The coordinate is N/L, a quotient of two forms. The factors of a form are computed with
         // three roundings, its value with four, and the quotient with one: 8 in total. The error of
         // N/L is proportional to 1/L. If L is only twice its own error, the true 1/L may be twice
@@ -302,7 +305,7 @@ impl Homography {
         // forms. The value of the form L at the point changes only by the error of L. Points near
         // the horizon, where L is 0, therefore hardly move perpendicular to the horizon, even if
         // they move far along it.
-        let levels = polygon.iter().map(|&p| form(&self.below, p));
+        let levels = polygon.iter().map(|&p| form(&self.denominator, p));
         let [least, more] = self.across_horizon;
         let across = (least + more * levels.fold(0.0, f64::max)).min(self.displacement);
         let mut before = polygon.last().copied().unwrap_or_default();

@@ -73,7 +73,7 @@ impl Homography {
         // m changes little from square to square.
         let [p, q] = self.slope;
         let depth = NEAR_SQUARES * (p.abs() + q.abs());
-        let nearness = |at: DVec2| depth.min(MAX_DEPTH) * form(&self.below, at) - 1.0;
+        let nearness = |at: DVec2| depth.min(MAX_DEPTH) * form(&self.denominator, at) - 1.0;
         let (mut far, mut near) = (Vec::new(), Vec::new());
         split(&visible.polygon, nearness, &mut far, &mut near);
         let mut sum = BoundedSum::default();
@@ -104,8 +104,11 @@ impl Homography {
         let floor: Vec<DVec2> = polygon
             .iter()
             .map(|&at| {
-                let depth = 1.0 / form(&self.below, at).max(0.0);
-                DVec2::from(self.across.map(|across| form(&across, at) * depth))
+                let depth = 1.0 / form(&self.denominator, at).max(0.0);
+                DVec2::from(
+                    self.numerators
+                        .map(|numerator| form(&numerator, at) * depth),
+                )
             })
             .collect();
         let (low, high) = floor.iter().fold(

@@ -79,8 +79,8 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -
 /// lines of one family of the board's lines (those between columns or between rows of squares).
 /// `rest` is the part of the polygon that is not yet cut off.
 struct Cutter {
-    across: [f64; 3],
-    below: [f64; 3],
+    numerators: [f64; 3],
+    denominator: [f64; 3],
     rest: Vec<DVec2>,
     piece: Vec<DVec2>,
     spare: Vec<DVec2>,
@@ -95,8 +95,8 @@ struct Cutter {
 impl Cutter {
     fn new(board: &Homography, family: usize) -> Self {
         Self {
-            across: board.across[family],
-            below: board.below,
+            numerators: board.numerators[family],
+            denominator: board.denominator,
             rest: Vec::new(),
             piece: Vec::new(),
             spare: Vec::new(),
@@ -111,7 +111,7 @@ impl Cutter {
         self.rest.clear();
         self.rest.extend(polygon);
         self.too_many = self.rest.len() + MAX_EXTRA_CORNERS;
-        let place = |&at: &DVec2| form(&self.across, at) / form(&self.below, at);
+        let place = |&at: &DVec2| form(&self.numerators, at) / form(&self.denominator, at);
         let places = || self.rest.iter().map(place);
         self.strips =
             (!self.rest.is_empty() && places().all(|at| at.abs() < MAX_SQUARE)).then(|| {
@@ -151,7 +151,7 @@ impl Cutter {
     /// before the line to `piece`, and adds the cut's error to `tally`. If `rest` then has too many
     /// corners, adds its area to the error and empties it.
     fn cut(&mut self, n: f64, tally: &mut CompensatedSum) {
-        let line: [f64; 3] = std::array::from_fn(|k| self.across[k] - n * self.below[k]);
+        let line: [f64; 3] = std::array::from_fn(|k| self.numerators[k] - n * self.denominator[k]);
         self.piece.clear();
         self.spare.clear();
         let chord = split(
@@ -168,7 +168,7 @@ impl Cutter {
             self.rest.clear();
         }
         let Some([from, to]) = chord else { return };
-        let size = |k: usize| self.across[k].abs() + (n * self.below[k]).abs();
+        let size = |k: usize| self.numerators[k].abs() + (n * self.denominator[k]).abs();
         // `off` is the maximum error of a value of the cutting line's form: three roundings of its
         // factors, and four of the value itself. Each rounding is relative to the sum of the
         // absolute values of the form's terms. The chord's end points are computed with four more

@@ -61,7 +61,7 @@ const SIDES: usize = 4 * (MAX_STRIP_LINES + 1) + MAX_STRIP_LINES;
 pub(super) struct BoardLanes {
     few: FormRows,
     many: FormRows,
-    below: FormRows,
+    denominator: FormRows,
     /// Sign by which each pixel's integral is multiplied at the end. The integral is computed as if
     /// the pixel's first square had the board's first colour. The sign is −1 if this square has the
     /// second colour. The first square is in the column and the row with the least numbers that the
@@ -140,11 +140,16 @@ impl BoardLanes {
         families: [usize; 2],
         first: [f64; 2],
     ) {
-        let CheckerForms { across, below, odd } = &checks.squares;
-        let [few, many] = families.map(|family| across[family].less(first[family], below));
+        let CheckerForms {
+            numerators,
+            denominator,
+            odd,
+        } = &checks.squares;
+        let [few, many] =
+            families.map(|family| numerators[family].less(first[family], denominator));
         self.few.set(place, &few);
         self.many.set(place, &many);
-        self.below.set(place, below);
+        self.denominator.set(place, denominator);
         let [above_left, above_right, below_left, below_right] = checks.corners[families[0]];
         let around = [above_left, above_right, below_right, below_left];
         for (row, square) in self.squares.iter_mut().zip(around) {
@@ -213,12 +218,13 @@ impl BoardLanes {
     /// errors, three roundings of their factors, and four roundings of their values.
     #[inline(always)]
     fn add_off(&self, across: &FormRows, n: f64, out: &mut Lanes) {
-        let below = &self.below;
+        let denominator = &self.denominator;
         for (i, out) in out.iter_mut().enumerate() {
-            let size = |k: usize| across.factors[k][i].abs() + (n * below.factors[k][i]).abs();
-            let slope = |k: usize| (across.factors[k][i] - n * below.factors[k][i]).abs();
+            let size =
+                |k: usize| across.factors[k][i].abs() + (n * denominator.factors[k][i]).abs();
+            let slope = |k: usize| (across.factors[k][i] - n * denominator.factors[k][i]).abs();
             let roundings = 7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2));
-            let value = roundings + across.rad[i] + n * below.rad[i];
+            let value = roundings + across.rad[i] + n * denominator.rad[i];
             *out += value / slope(0).max(slope(1));
         }
     }
@@ -254,7 +260,8 @@ impl BoardLanes {
                 let mut places = [0.0; PIXELS];
                 let mut crossed = [[0.0; PIXELS]; 2];
                 for i in 0..PIXELS {
-                    let factor = |k: usize| self.few.factors[k][i] - n * self.below.factors[k][i];
+                    let factor =
+                        |k: usize| self.few.factors[k][i] - n * self.denominator.factors[k][i];
                     let line = [factor(0), factor(1), factor(2)];
                     let (start, end) = (value(line, from), value(line, to));
                     let place = start / (start - end);
@@ -340,7 +347,7 @@ impl BoardLanes {
         let mut area = [0.0; PIXELS];
         let (mut form, mut origin) = ([[0.0; PIXELS]; 3], [[0.0; PIXELS]; 2]);
         for i in 0..PIXELS {
-            let factor = |k: usize| self.many.factors[k][i] - line * self.below.factors[k][i];
+            let factor = |k: usize| self.many.factors[k][i] - line * self.denominator.factors[k][i];
             let (x, y, z) = (factor(0), factor(1), factor(2));
             let foot = -z / (x * x + y * y);
             (form[0][i], form[1][i], form[2][i]) = (x, y, z);

@@ -182,7 +182,7 @@ impl Prediction<'_> {
     /// Returns the sum of the squared differences divided by the sum of the variances of one
     /// sample, both over the pixels that mix several colours. With n independent samples per pixel,
     /// the ratio is about 1/n. It is at most 1.
-    pub fn share(&self) -> f64 {
+    pub fn relative_variance(&self) -> f64 {
         let (mut squares, mut variances) = (0.0, 0.0);
         for at in (0..self.observed.len()).filter(|&at| !self.is_flat(at)) {
             squares += self.difference(at).length_squared();
@@ -193,13 +193,18 @@ impl Prediction<'_> {
 
     /// Estimates the width of the pixel filter, in pixels. Returns `None` if it may be 1.
     /// `deviations` contains, for each channel of each pixel, the standard deviation of one sample.
-    /// `share` is the variance of a pixel's error divided by that of one sample, i.e. 1/n for n
-    /// samples per pixel. `is_coded` says whether the picture is a JPEG.
+    /// `relative_variance` is the variance of a pixel's error divided by that of one sample, i.e.
+    /// 1/n for n samples per pixel. `is_coded` says whether the picture is a JPEG.
     ///
     /// The estimate is of second order: the mean light over a square of the width w differs from
     /// the mean over a correct pixel, of the width 1, by (w² − 1)/24 times the Laplacian of the
     /// picture.
-    pub fn pixel_width(&self, deviations: &[f64], share: f64, is_coded: bool) -> Option<f64> {
+    pub fn pixel_width(
+        &self,
+        deviations: &[f64],
+        relative_variance: f64,
+        is_coded: bool,
+    ) -> Option<f64> {
         let (width, height) = (self.width, self.observed.len() / self.width);
         let mean = &self.moments.mean;
         let (mut seen, mut all, mut variance) = (0.0, 0.0, 0.0);
@@ -219,7 +224,7 @@ impl Prediction<'_> {
                 let weighted = laplacian / (deviation * deviation);
                 seen += weighted.dot(self.difference(at));
                 all += weighted.dot(laplacian);
-                variance += (weighted * weighted).dot(self.error(at, share));
+                variance += (weighted * weighted).dot(self.error(at, relative_variance));
             }
         }
         let square = 1.0 + 24.0 * seen / all.max(1e-300);
@@ -227,25 +232,25 @@ impl Prediction<'_> {
         let is_other = if is_coded {
             square > WIDE_IN_CODED
         } else {
-            let is_narrow = square < 1.0 - NARROW - NARROWER * share;
-            is_narrow || square > WIDE + WIDER * share
+            let is_narrow = square < 1.0 - NARROW - NARROWER * relative_variance;
+            is_narrow || square > WIDE + WIDER * relative_variance
         };
         (is_sure && is_other).then(|| square.max(0.0).sqrt().clamp(LEAST_WIDTH, MOST_WIDTH))
     }
 
     /// Returns the displacement of each group of pixels, for example of the pixels that show one
     /// object. The result is `None` for a displacement that may be chance. `groups` contains the
-    /// index of each pixel's group. `share` is the variance of a pixel's error divided by the
-    /// variance of one sample, i.e. 1/n for n samples per pixel. `is_coded` says whether the
+    /// index of each pixel's group. `relative_variance` is the variance of a pixel's error divided
+    /// by the variance of one sample, i.e. 1/n for n samples per pixel. `is_coded` says whether the
     /// picture is a JPEG.
     pub fn displacements(
         &self,
         deviations: &[f64],
-        share: f64,
+        relative_variance: f64,
         groups: &[usize],
         is_coded: bool,
     ) -> Vec<Option<Displacement>> {
-        let off_middle = (OFF_MIDDLE * share).min(MOST_OFF_MIDDLE);
+        let off_middle = (OFF_MIDDLE * relative_variance).min(MOST_OFF_MIDDLE);
         let (width, count) = (self.width, self.observed.len());
         let height = count / width;
         let mean = &self.moments.mean;
@@ -271,7 +276,7 @@ impl Prediction<'_> {
             if right == DVec3::ZERO && down == DVec3::ZERO {
                 continue;
             }
-            let (difference, error) = (self.difference(at), self.error(at, share));
+            let (difference, error) = (self.difference(at), self.error(at, relative_variance));
             let [x0, x1, y0, y1] = boxes[*group];
             let reach = ((x1 - x0).max(y1 - y0) / 2.0).max(1.0);
             let [x, y] = place(at);

@@ -40,7 +40,7 @@ pub struct Score {
     pub noise: f64,
     /// Variance of a pixel's error divided by the variance of one sample, i.e. 1/n for n samples
     /// per pixel.
-    pub share: f64,
+    pub relative_variance: f64,
 }
 
 /// Difference between a pixel and its prediction, with two variances from which its own is
@@ -64,23 +64,23 @@ impl PixelError {
         }
     }
 
-    /// Returns the variance of the error. `share` is 1/n for n samples per pixel.
-    fn total(&self, share: f64) -> DVec3 {
-        self.variance * share + self.rounding
+    /// Returns the variance of the error. `relative_variance` is 1/n for n samples per pixel.
+    fn total(&self, relative_variance: f64) -> DVec3 {
+        self.variance * relative_variance + self.rounding
     }
 
-    /// Returns the squared error divided by its variance, summed over the channels. `share` is 1/n
-    /// for n samples per pixel.
-    fn chi_square(&self, share: f64) -> f64 {
-        (self.difference * self.difference / self.total(share)).element_sum()
+    /// Returns the squared error divided by its variance, summed over the channels.
+    /// `relative_variance` is 1/n for n samples per pixel.
+    fn chi_square(&self, relative_variance: f64) -> f64 {
+        (self.difference * self.difference / self.total(relative_variance)).element_sum()
     }
 
-    /// Returns the logarithm of the error's probability density, up to a constant. `share` is 1/n
-    /// for n samples per pixel.
-    fn density(&self, share: f64) -> f64 {
-        let volume = self.total(share).element_product();
+    /// Returns the logarithm of the error's probability density, up to a constant.
+    /// `relative_variance` is 1/n for n samples per pixel.
+    fn density(&self, relative_variance: f64) -> f64 {
+        let volume = self.total(relative_variance).element_product();
         -0.5 * libm::log(volume)
-            - (FREEDOM + 3.0) / 2.0 * libm::log1p(self.chi_square(share) / FREEDOM)
+            - (FREEDOM + 3.0) / 2.0 * libm::log1p(self.chi_square(relative_variance) / FREEDOM)
     }
 }
 
@@ -89,23 +89,24 @@ impl Prediction<'_> {
     pub fn score(&self) -> Score {
         let errors = (0..self.observed.len()).map(|at| PixelError::of(self, at));
         let errors: Vec<PixelError> = errors.collect();
-        // Pixels of one colour have no sampling error, so `share` is fitted to the other pixels.
+        // Pixels of one colour have no sampling error, so `relative_variance` is fitted to the
+        // other pixels.
         let has_several = |one: &&PixelError| one.variance != DVec3::ZERO;
         let mixed: Vec<&PixelError> = errors.iter().filter(has_several).collect();
         // Estimate of 1/n, where n is the number of samples per pixel: the variance of a pixel's
         // error divided by the variance of one sample.
-        let mut share: f64 = 1.0;
+        let mut relative_variance: f64 = 1.0;
         for _ in 0..ROUNDS {
             let (mut above, mut below) = (0.0, 0.0);
             for one in &mixed {
-                let weight = (FREEDOM + 3.0) / (FREEDOM + one.chi_square(share));
-                let total = one.total(share);
+                let weight = (FREEDOM + 3.0) / (FREEDOM + one.chi_square(relative_variance));
+                let total = one.total(relative_variance);
                 let part = one.variance / (total * total);
                 above += part.dot(weight * one.difference * one.difference - total);
                 below += part.dot(one.variance);
             }
             if below > 0.0 {
-                share = (share + above / below).clamp(1e-6, 1.0);
+                relative_variance = (relative_variance + above / below).clamp(1e-6, 1.0);
             }
         }
         // Hypotheses with different encodings decode a picture to different light, so likelihoods
@@ -126,10 +127,10 @@ impl Prediction<'_> {
         // explain.
         let (mut of_samples, mut beyond) = (0.0, 0.0);
         for one in &errors {
-            likelihood += one.density(share);
+            likelihood += one.density(relative_variance);
             let square = one.difference * one.difference;
             squares += square.element_sum();
-            expected += one.total(share).element_sum();
+            expected += one.total(relative_variance).element_sum();
             of_samples += one.variance.element_sum();
             let has_several = one.variance.cmpgt(DVec3::ZERO);
             beyond += DVec3::select(has_several, square - one.rounding, DVec3::ZERO).element_sum();
@@ -140,10 +141,13 @@ impl Prediction<'_> {
         Score {
             likelihood,
             samples: is_known.then(|| (of_samples / beyond).max(1.0)),
-            chi_squares: errors.iter().map(|one| one.chi_square(share)).collect(),
+            chi_squares: errors
+                .iter()
+                .map(|one| one.chi_square(relative_variance))
+                .collect(),
             squares,
             noise: expected.min(squares),
-            share,
+            relative_variance,
         }
     }
 
@@ -171,9 +175,9 @@ impl Prediction<'_> {
             if before == after || light.x.is_nan() {
                 continue;
             }
-            let mut error = self.error(at, score.share);
+            let mut error = self.error(at, score.relative_variance);
             if is_alike {
-                error = error.max(other.error(at, score.share));
+                error = error.max(other.error(at, score.relative_variance));
             }
             let change = before - after;
             let deviation = DVec3::from_slice(&deviations[3 * at..]);
@@ -185,9 +189,9 @@ impl Prediction<'_> {
         [seen / all.max(1e-300), seen / variance.max(1e-300).sqrt()]
     }
 
-    /// Returns the variance of a pixel's error for each channel. `share` is 1/n for n samples per
-    /// pixel.
-    pub fn error(&self, at: usize, share: f64) -> DVec3 {
-        PixelError::of(self, at).total(share)
+    /// Returns the variance of a pixel's error for each channel. `relative_variance` is 1/n
+    /// for n samples per pixel.
+    pub fn error(&self, at: usize, relative_variance: f64) -> DVec3 {
+        PixelError::of(self, at).total(relative_variance)
     }
 }

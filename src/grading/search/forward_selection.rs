@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use super::{
     edge_rows::{ROUNDS, explained_with, rows_in_areas},
     joint,
-    judge::{Judge, Judged, least},
+    judge::{Judge, JudgedCandidate, least},
     numeric_mistakes::{numeric_mistakes, slightly_wrong, suspects},
     patch::patch,
     plain_numbers::plain,
@@ -78,7 +78,7 @@ const EXTENDED: f64 = 0.5;
 /// Searches for the mistakes that explain a picture best. Tries sets of at most `most` mistakes,
 /// and adds a few that are visible only at edges. Returns the best set, as a hypothesis, and
 /// whether it explains the picture.
-pub fn run(judge: &Judge, most: usize) -> Result<Option<(Judged, bool)>, Cancelled> {
+pub fn run(judge: &Judge, most: usize) -> Result<Option<(JudgedCandidate, bool)>, Cancelled> {
     let mut search = Search {
         judge,
         examined: Vec::new(),
@@ -136,7 +136,7 @@ struct Search<'a> {
     /// Least squared difference from the student's picture among all hypotheses so far, divided by
     /// that of a correct program.
     least_left: f64,
-    /// Cost ([`Judged::cost`]) of a correct program.
+    /// Cost ([`JudgedCandidate::cost`]) of a correct program.
     cost_of_correct: f64,
     /// Hypothesis with the least cost so far, and its cost; `None` at the start.
     nearest: Option<(f64, Candidate)>,
@@ -154,7 +154,7 @@ impl Search<'_> {
             self.cost_of_correct = correct.cost;
         }
         for size in 1..=most {
-            let mut examined: Vec<Judged> = Vec::new();
+            let mut examined: Vec<JudgedCandidate> = Vec::new();
             let mut next: Vec<(f64, Candidate)> = Vec::new();
             for from in &beam {
                 if self.is_explained_by(size) {
@@ -208,7 +208,7 @@ impl Search<'_> {
             examined.sort_by(|one, other| one.cost.total_cmp(&other.cost));
             examined.truncate(BEAM_WIDTH);
             if size > 1 {
-                let left = |one: &Judged| left(judge, one.candidate());
+                let left = |one: &JudgedCandidate| left(judge, one.candidate());
                 examined.retain(|one| left(one).is_some_and(|left| left <= EXTENDED));
             }
             beam = examined;
@@ -217,7 +217,7 @@ impl Search<'_> {
 
     /// Extends the best set of mistakes by numbers of the scene that are slightly wrong, examines
     /// the results, and adds them to `examined`. Does nothing if the picture is explained already.
-    fn refine(&mut self, best: &Judged, examined: &mut Vec<Judged>) {
+    fn refine(&mut self, best: &JudgedCandidate, examined: &mut Vec<JudgedCandidate>) {
         let judge = self.judge;
         if self.explained.is_some() || !judge.work.may_go_on() {
             return;
@@ -262,7 +262,7 @@ impl Search<'_> {
     /// Fits a hypothesis's numbers, and judges it on the grid `middle`. Remembers it if it has the
     /// least cost so far, or explains the picture. Returns `None` if a simpler hypothesis is known
     /// to explain the picture, or if the budget of work is used up.
-    fn examine(&mut self, candidate: &Candidate) -> Option<Judged> {
+    fn examine(&mut self, candidate: &Candidate) -> Option<JudgedCandidate> {
         let judge = self.judge;
         if self.has_better(candidate, f64::NEG_INFINITY) {
             return None;
@@ -320,7 +320,7 @@ fn hits_spheres_wrongly(candidate: &Candidate) -> bool {
 }
 
 /// Adds an extra area of one colour. Returns `None` if this does not explain the picture.
-fn patched(judge: &Judge, from: &Judged) -> Option<Candidate> {
+fn patched(judge: &Judge, from: &JudgedCandidate) -> Option<Candidate> {
     if !is_near(judge, from.candidate()) {
         return None;
     }
@@ -403,7 +403,7 @@ type Rated = Vec<(f64, Candidate)>;
 /// Extends a set of mistakes by further mistakes.
 struct Extension<'a> {
     judge: &'a Judge<'a>,
-    from: &'a Judged,
+    from: &'a JudgedCandidate,
     tiny: Level<'a>,
     suspects: Vec<usize>,
     /// Difference between the picture and the prediction of `from`, on the coarsest grid (`tiny`).
@@ -418,7 +418,7 @@ impl<'a> Extension<'a> {
 
     /// Prepares the extension of a set of mistakes. Returns `None` if the budget of work is used
     /// up.
-    fn from(judge: &'a Judge, from: &'a Judged) -> Option<Self> {
+    fn from(judge: &'a Judge, from: &'a JudgedCandidate) -> Option<Self> {
         judge.compare_with(from.candidate());
         let tiny = judge.tiny(from.candidate())?;
         let (difference, _) = judge.with_difference(from.candidate().clone(), &tiny)?;

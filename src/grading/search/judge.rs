@@ -97,7 +97,7 @@ impl Residual {
 }
 
 /// A hypothesis about the program, with its score at one resolution.
-pub struct Judged {
+pub struct JudgedCandidate {
     /// Rendering of the hypothesis at this resolution.
     pub rendering: Arc<Rendering>,
     pub score: Score,
@@ -106,7 +106,7 @@ pub struct Judged {
     pub cost: f64,
 }
 
-impl Judged {
+impl JudgedCandidate {
     pub fn candidate(&self) -> &Candidate {
         &self.rendering.candidate
     }
@@ -249,11 +249,11 @@ impl<'a> Judge<'a> {
 
     /// Computes the score and the cost of a hypothesis at one resolution. Returns `None` if the
     /// budget of work is used up.
-    pub fn judged(&self, candidate: &Candidate, level: &Level) -> Option<Judged> {
+    pub fn judged(&self, candidate: &Candidate, level: &Level) -> Option<JudgedCandidate> {
         let rendering = level.render(candidate, &self.work)?;
         let score = level.predict(&rendering).score();
         let cost = price(level, candidate.parameter_count()) - score.likelihood;
-        Some(Judged {
+        Some(JudgedCandidate {
             rendering,
             score,
             cost,

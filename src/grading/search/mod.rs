@@ -22,4 +22,4 @@ mod patch;
 mod plain_numbers;
 mod residual;
 
-pub use self::judge::{Judge, Judged};
+pub use self::judge::{Judge, JudgedCandidate};

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 
-use super::judge::{CELL_STEP, Judge, Judged, least};
+use super::judge::{CELL_STEP, Judge, JudgedCandidate, least};
 use crate::{
     color::{Color, linear_to_srgb},
     grading::{
@@ -43,7 +43,7 @@ pub const SLIPS: [f64; 5] = [-1.0, 2.0, 0.5, 10.0, 0.1];
 /// on this grid.
 pub fn numeric_mistakes(
     judge: &Judge,
-    from: &Judged,
+    from: &JudgedCandidate,
     suspects: &[usize],
     tiny: &Level,
 ) -> Vec<(f64, Candidate)> {
@@ -124,7 +124,7 @@ pub fn slightly_wrong(judge: &Judge, candidate: &Candidate, suspects: &[usize]) 
 }
 
 /// Returns the indices of the objects that may be wrong, the one with the largest error first.
-pub fn suspects(judge: &Judge, from: &Judged) -> Vec<usize> {
+pub fn suspects(judge: &Judge, from: &JudgedCandidate) -> Vec<usize> {
     let grid = &judge.middle.grid;
     let labels = judge.labels(from.candidate(), from.candidate().layout, grid);
     let mut wrong = vec![0.0; judge.scene.objects.len()];

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use super::judge::{Judge, Judged};
+use super::judge::{Judge, JudgedCandidate};
 use crate::grading::hypotheses::{Mistake, is_near};
 
 /// Least number of pixels in a patch. Fewer may be noise.
@@ -19,7 +19,7 @@ const MOST: f64 = 0.2;
 /// Finds the largest connected area of one colour that the hypothesis `from` does not explain.
 /// Returns `None` if the area is too small, too thin or too large, if it has a colour of the scene,
 /// or if the hypothesis has a patch already.
-pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
+pub fn patch(judge: &Judge, from: &JudgedCandidate) -> Option<Mistake> {
     let mut others = from.candidate().mistakes.iter();
     if others.any(|one| matches!(one, Mistake::Patch(..))) {
         return None;

@@ -188,19 +188,19 @@ fn displacement_and_width(
     groups: &[usize],
 ) -> (Option<Displacement>, Option<f64>) {
     let level = &judge.fine;
-    let share = match level.jpeg {
-        // `share` is the variance of a pixel's error, divided by that of one sample. For a JPEG, it
-        // is computed in another way, because coding changes edges as if there were fewer samples.
-        Some(_) => prediction.share(),
+    let relative_variance = match level.jpeg {
+        // The variance of a pixel's error, divided by that of one sample. For a JPEG, it is
+        // computed in another way, because coding changes edges as if there were fewer samples.
+        Some(_) => prediction.relative_variance(),
         None => {
             let score = prediction.score();
-            score.samples.map_or(score.share, |n| 1.0 / n)
+            score.samples.map_or(score.relative_variance, |n| 1.0 / n)
         }
     };
     let deviations = prediction.deviations();
     let beyond = |groups: &[usize], is_beyond: &dyn Fn(&Displacement) -> bool| {
         let all = prediction
-            .displacements(&deviations, share, groups, level.jpeg.is_some())
+            .displacements(&deviations, relative_variance, groups, level.jpeg.is_some())
             .into_iter();
         let all = all.flatten().filter(is_beyond);
         all.max_by(|one, other| one.length.total_cmp(&other.length))
@@ -209,19 +209,19 @@ fn displacement_and_width(
         let by = f64::max(one.by[0].abs(), one.by[1].abs());
         level.jpeg.is_some() && by > MOVED && one.square > SURELY_MOVED
     };
-    let of_all = IGNORED + IGNORED_WITH_ONE_SAMPLE * share;
+    let of_all = IGNORED + IGNORED_WITH_ONE_SAMPLE * relative_variance;
     let off = beyond(&vec![0; groups.len()], &|one| {
         one.length > of_all || is_moved(one)
     });
     let [none, of_one, of_coded] = IGNORED_OF_OBJECT;
     let more = level.jpeg.map_or(of_one, |_| of_coded);
-    let of_object = none + more * share.sqrt();
+    let of_object = none + more * relative_variance.sqrt();
     // The pixel width is not estimated in two cases: if the hypothesis already contains a wrong
     // width, or if an effect on light does not keep means. In the second case, pixels at edges
     // depend both on this effect and on the width.
     let is_width_explained = candidate.is_filtered() || !candidate.keeps_light();
     let width = (!is_width_explained)
-        .then(|| prediction.pixel_width(&deviations, share, level.jpeg.is_some()));
+        .then(|| prediction.pixel_width(&deviations, relative_variance, level.jpeg.is_some()));
     (
         off.or_else(|| beyond(groups, &|one| one.length > of_object)),
         width.flatten(),

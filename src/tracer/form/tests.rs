@@ -27,8 +27,8 @@ fn values<T: Precision>(world: &World, (x, y, offset): Sample) -> [Ball<T>; 3] {
     let Object::Checkerboard(board) = &*object else {
         unreachable!("the world has a board");
     };
-    let [a, b] = &board.across;
-    [&board.below, a, b].map(|form| form.at(&ray))
+    let [a, b] = &board.numerators;
+    [&board.denominator, a, b].map(|form| form.at(&ray))
 }
 
 fn compare<T: Precision>(

@@ -189,8 +189,12 @@ impl PreparedPixel {
         surface: &PixelSurface,
     ) -> Result<ColorPattern, Hard> {
         let squares = CheckerForms::new(&board.local(&pixel.center, &pixel.sides));
-        let CheckerForms { across, below, .. } = &squares;
-        let sizes = [below, &across[0], &across[1]].map(|local| local.rad);
+        let CheckerForms {
+            numerators,
+            denominator,
+            ..
+        } = &squares;
+        let sizes = [denominator, &numerators[0], &numerators[1]].map(|local| local.rad);
         if !sizes.iter().all(|&rad| rad < MAX_FORM_ERROR) {
             return Err(Hard);
         }
@@ -214,12 +218,16 @@ impl PreparedPixel {
         if (x1 - x0) + (z1 - z0) > MAX_LINES as f64 {
             return Ok(ColorPattern::Squares(*squares));
         }
-        let CheckerForms { across, below, odd } = squares;
+        let CheckerForms {
+            numerators,
+            denominator,
+            odd,
+        } = squares;
         let mut odd = odd ^ is_odd(x0) ^ is_odd(z0);
-        for (across, first, last) in [(&across[0], x0, x1), (&across[1], z0, z1)] {
+        for (numerator, first, last) in [(&numerators[0], x0, x1), (&numerators[1], z0, z1)] {
             let mut k = first + 1.0;
             while k <= last {
-                let line = across.less(k, below);
+                let line = numerator.less(k, denominator);
                 // The form `line` is zero on line number k between squares, and positive beyond it,
                 // where x/square or z/square is greater than k. If it is positive in the whole
                 // pixel, the whole pixel lies beyond the line, so the parity `odd` is negated.

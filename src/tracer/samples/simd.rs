@@ -157,9 +157,9 @@ fn between(
 #[inline(always)]
 fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: &mut [f64]) {
     const ONE: u64 = 1.0f64.to_bits();
-    let LocalForm { factors: l, rad } = squares.below;
-    let [n0, n1] = squares.across.map(|across| across.factors);
-    let rads = squares.across.map(|across| across.rad);
+    let LocalForm { factors: l, rad } = squares.denominator;
+    let [n0, n1] = squares.numerators.map(|across| across.factors);
+    let rads = squares.numerators.map(|across| across.rad);
     for ((shown, &x), &y) in shown.iter_mut().zip(x).zip(y) {
         let below = l[0] * x + l[1] * y + l[2];
         let inverse = 1.0 / below;

@@ -26,8 +26,8 @@ struct Found {
 /// Returns a board whose forms differ from those of `board` by rounding errors. Each factor is
 /// changed by a unit roundoff, in the direction that increases the integral over the pixel.
 fn worst(board: &Homography) -> ExactBoard {
-    let [a, b] = board.across;
-    let forms = [a, b, board.below];
+    let [a, b] = board.numerators;
+    let forms = [a, b, board.denominator];
     let integral = |roundings| ExactBoard::of_rounded(forms, roundings).integral(&PIXEL);
     let of_rounded = integral([[0.0; 3]; 3]);
     let roundings = [0, 1, 2].map(|form| {
@@ -90,7 +90,7 @@ fn errors_of_boards_are_within_tight_bounds() {
             let (mut far, mut near) = (Vec::new(), Vec::new());
             split(
                 &PIXEL,
-                |at| depth * form(&board.below, at) - 1.0,
+                |at| depth * form(&board.denominator, at) - 1.0,
                 &mut far,
                 &mut near,
             );

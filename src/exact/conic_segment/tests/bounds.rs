@@ -74,18 +74,18 @@ impl ExactArc {
     /// Returns the parameters at which the arc crosses a line of the board, in ascending order.
     fn cuts(&self, board: &ExactBoard) -> Vec<N> {
         let mut cuts = vec![NUMBER.exact(0.0), NUMBER.exact(1.0)];
-        for across in &board.across {
+        for across in &board.numerators {
             let places = self
                 .points
                 .each_ref()
-                .map(|p| form(across, p) / form(&board.below, p));
+                .map(|p| form(across, p) / form(&board.denominator, p));
             let [low, high] = [places.iter().min(), places.iter().max()].map(|n| n.unwrap());
             let mut n = low.ceil();
             while n <= *high {
                 let values = self
                     .points
                     .each_ref()
-                    .map(|p| form(across, p) - &n * form(&board.below, p));
+                    .map(|p| form(across, p) - &n * form(&board.denominator, p));
                 cuts.extend(self.zeros(values));
                 n += NUMBER.exact(1.0);
             }
@@ -120,7 +120,7 @@ fn integral(board: &ExactBoard, arc: &ExactArc) -> N {
         let [x, y, w] = piece.blossom(&half, &half);
         let middle = [x / &w, y / w];
         let is_odd = [0, 1].map(|i| {
-            let place = form(&board.across[i], &middle) / form(&board.below, &middle);
+            let place = form(&board.numerators[i], &middle) / form(&board.denominator, &middle);
             place.floor().to_f64().value().rem_euclid(2.0) == 1.0
         });
         let area = piece.area();
@@ -169,8 +169,8 @@ fn errors_of_segments_are_within_tight_bounds() {
                     weight,
                 };
                 let sum = board.over_segment(&arc, &budget);
-                let [a, b] = board.across;
-                let exact = ExactBoard::of_rounded([a, b, board.below], roundings);
+                let [a, b] = board.numerators;
+                let exact = ExactBoard::of_rounded([a, b, board.denominator], roundings);
                 let expected = integral(&exact, &ExactArc::new(&arc));
                 let error = (expected - NUMBER.exact(sum.value)).to_f64().value().abs();
                 let lines = [0, 1].map(|i| board.lines(&arc, i));

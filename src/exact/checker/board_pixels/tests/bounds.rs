@@ -27,14 +27,17 @@ fn forms(oracle: &Oracle, pixel: &BoardPixel, eye: DVec3, [y, square]: [f64; 2])
         let middle = &middle[axis];
         [&right[axis] - middle, &down[axis] - middle, middle.clone()]
     };
-    let below = component(1).map(|factor| -factor);
+    let denominator = component(1).map(|factor| -factor);
     let height = number(eye.y) - number(y);
-    let across = [0, 2].map(|axis| {
+    let numerators = [0, 2].map(|axis| {
         let along = component(axis);
         let from = number(eye.to_array()[axis]);
-        [0, 1, 2].map(|k| (&from * &below[k] + &height * &along[k]) / number(square))
+        [0, 1, 2].map(|k| (&from * &denominator[k] + &height * &along[k]) / number(square))
     });
-    ExactBoard { across, below }
+    ExactBoard {
+        numerators,
+        denominator,
+    }
 }
 
 #[test]
