@@ -36,7 +36,7 @@ class Scene {
   isNew = isServed;
   /** Initial text of a new scene, which need not be saved; null if the scene comes from a file. */
   untouched: string | null = null;
-  /** `link` if the scene was in a link. */
+  /** `link` if the scene comes from a link; null otherwise. */
   from: "link" | null = null;
 
   /** Creates a scene. If `of` is given, the new scene is a copy of `of` under another name, and
@@ -144,15 +144,16 @@ class Files {
   /** Whether the scene of a lesson is shown. */
   get isLesson(): boolean { return this.own !== null; }
 
-  /** Handles what has happened to the host's file while another scene was shown. Does so later,
-   * because the host's scene may be about to be replaced again, or a transaction may be under
-   * way. */
+  /** Handles a change of the host's file that arrived while another scene was shown. The change is
+   * handled in a microtask, because now a transaction may be under way, or another scene may be
+   * about to replace the host's scene again. */
   private followHost(): void {
     queueMicrotask(() => { if (this.at === this.hosts && this.late) this.hosted(this.late); });
   }
 
-  /** Replaces the shown scene by the scene `to` with this text. Undo restores the old scene. A
-   * lesson's scene is not restored: the user's own scene takes its place first. */
+  /** Replaces the shown scene by the scene `to` with this text. Undo restores the old scene. If a
+   * lesson's scene is shown, the user's own scene first replaces it, so Undo restores the own
+   * scene. */
   private begin(text: string, to = new Scene()): void {
     if (!this.isTold) return say("Studio is not ready yet.", "warning");
     this.closeLesson();
@@ -405,7 +406,8 @@ class Files {
   }
 }
 
-/** Returns `text` with the line ends of `file`. A new line ends as the line before it does. */
+/** Returns `text` with the line ends of `file`. A line that is not in `file` gets the line end of
+ * the line before it. */
 export function withEndsOf(file: string, text: string): string {
   if (!file.includes("\r")) return text;
   const ends = file.match(/\r\n?|\n/g)?.map(end => end === "\r" ? "\n" : end) ?? [];
@@ -422,7 +424,8 @@ export function withEndsOf(file: string, text: string): string {
 const CLASSES = { " ": "", "-": "removed", "+": "added" };
 interface DifferenceLine { sign: " " | "-" | "+"; text: string }
 
-/** Compares two texts. Returns the first to the last differing line, and two lines around them. */
+/** Compares two texts. Returns the lines from the first to the last difference, and up to two more
+ * lines before and after them. */
 export function difference(one: string, other: string): DifferenceLine[] {
   const lines = compared(one.split("\n"), other.split("\n"));
   const differs = ({ sign }: DifferenceLine) => sign !== " ";

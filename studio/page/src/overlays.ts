@@ -50,7 +50,8 @@ class OverlayLayer {
     this.onNeed();
   }
 
-  /** Hides all layers until the user shows one again. A reload shows those that are remembered. */
+  /** Hides all layers. A reload shows the remembered layers again. If the page's address names
+   * layers, does nothing. */
   hideLayers(): void {
     if (inAddress("show") !== null) return;
     for (const box of boxes) box.checked = false;

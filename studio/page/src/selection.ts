@@ -197,8 +197,7 @@ export function placeHandles(parent: HTMLElement, where: Picture,
 }
 
 /** Returns a position near a handle's point that is at least `least` screen pixels away from the
- * positions in `taken`. If the point is inside of the `stage`, the position is, too, if
- * possible. */
+ * positions in `taken`. If the point is inside of the `stage`, prefers positions inside. */
 function apart([x, y]: Point, taken: readonly Point[], least: number, stage: HTMLElement): Point {
   const isFree = ([x, y]: Point) =>
     taken.every(it => Math.max(Math.abs(x - it[0]), Math.abs(y - it[1])) >= least);
