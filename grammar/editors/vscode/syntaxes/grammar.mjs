@@ -73,7 +73,7 @@ const rule = (begin, types, end, ...names) => ({
   patterns: includes(...names),
 });
 
-/** Rules for words of a value in parentheses, after which no field can begin. */
+/** Rules for words of values after which no field can begin, such as those in parentheses. */
 const WORDS = [
   scoped(`(?<![A-Za-z0-9_.])${NUMBER}`, "number"),
   scoped(COLOR_CODE, "number"),
