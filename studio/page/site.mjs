@@ -23,8 +23,8 @@ const run = (program, ...args) => execFileSync(program, args, { cwd: page, stdio
 // Optimizing for size inlines hardly anything; a little inlining makes frames about twice as fast,
 // and the engine 1 % larger.
 const inlining = ["-C", "llvm-args=-inline-threshold=4"];
-// Panics contain paths of source files. Without this machine's folders they are short, and the site
-// has the same size on every machine.
+// Messages of panics contain paths of source files. This machine's folders are removed from the
+// paths, so that the site has the same size on every machine.
 const sources = path.join(process.env.CARGO_HOME ?? path.join(homedir(), ".cargo"), "registry/src");
 const registries = existsSync(sources) ? readdirSync(sources) : [];
 const short = registries.map(registry => `--remap-path-prefix=${path.join(sources, registry)}/=`);

@@ -31,7 +31,7 @@ class Scene {
   /** Whether the file was removed after it was read. */
   isGone = false;
   handle: FileSystemFileHandle | null = null;
-  copy: Scene | null = null; // the copy by which Save as has replaced this scene
+  copy: Scene | null = null; // copy that replaced this scene when it was saved by Save as
   /** Whether the host has no file for the scene yet, so that Save asks for a name. */
   isNew = isServed;
   /** Initial text of a new scene, which need not be saved; null if the scene comes from a file. */

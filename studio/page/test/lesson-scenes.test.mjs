@@ -44,7 +44,8 @@ for (const [way, act] of Object.entries(WAYS)) {
     assert.ok(await page.isHidden("#lesson"));
     assert.doesNotMatch(page.url(), /lesson/);
     assert.equal(await page.locator("#draft-choices li").count(), 1);
-    // The changed texts of the lesson and of the scene that was opened after it are kept.
+    // When the lesson is opened again, it has its changed text. When it is closed, the scene that
+    // was opened after it is shown again.
     await choose(page, 1);
     assert.equal(await text(page), changed);
     await andFinished(page, () => page.click("#lesson-close"));
