@@ -46,7 +46,8 @@ class Scene {
   /** Last known content of the file, or the initial text if there is no file. */
   get held(): string { return this.seen ?? this.untouched ?? ""; }
 
-  /** Returns whether `text` is neither in the file nor the initial text. */
+  /** Returns whether `text` differs from the file's content and from the initial text. In a panel,
+   * VS Code saves the text, so the result is always false. */
   isChangedBy(text: string): boolean {
     const { isGone, seen, untouched } = this;
     return !panel && (untouched === null || text !== withLf(untouched))
@@ -165,9 +166,8 @@ class Files {
       effects: turns.of({ from: this.at, to }) });
   }
 
-  /** Makes the scene that the editor shows the current scene, after Undo, Redo or the start of a
-   * new scene. If this scene was saved under another name, its newest copy becomes the current
-   * scene. */
+  /** After Undo, Redo or the start of a new scene, sets `at` to the scene that the editor shows. If
+   * this scene was saved under another name, sets `at` to its newest copy. */
   follow(transactions: readonly Transaction[]): void {
     for (const { effects } of transactions) for (const it of effects) {
       if (!it.is(turns)) continue;
@@ -201,8 +201,8 @@ class Files {
     const { name, text, reason, saved } = file;
     unsay(NOT_SAVED);
     Object.assign(this.hosts, { name, isNew: isServed && !saved });
-    // While the page shows another scene, the text in the editor is not the host's, so it is not
-    // replaced.
+    // While the page shows another scene, the text of the host's file must not replace that scene's
+    // text. It is handled later.
     this.late = this.at === this.hosts ? null : file;
     if (this.late !== null) return this.show();
     if (!this.isTold) {

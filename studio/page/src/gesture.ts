@@ -9,8 +9,8 @@ import { Decoration, EditorView, type DecorationSet } from "@codemirror/view";
 /** Marks a change of the text as the first change of a gesture, or as a later one. */
 const step = Annotation.define<"first" | "next">();
 
-/** Pause in typing, in ms. What is typed before and after such a pause is undone separately. The
- * value is CodeMirror's default. */
+/** Maximum pause in typing, in ms, after which the text before and after the pause is still undone
+ * together. The value is CodeMirror's default. */
 const TYPING_PAUSE = 500;
 const touched = Decoration.mark({ class: "touched" });
 

@@ -33,9 +33,9 @@ function nameOf({ key, ctrlKey, metaKey, shiftKey }: KeyboardEvent): string {
   return `Control+${shiftKey ? "Shift+" : ""}${key.toLowerCase()}`;
 }
 
-/** Returns the element that a key operates; undefined if the key has no function. If the key
- * selects the axis or plane to which drags are restricted already, returns the element `free`
- * instead, which removes the restriction. */
+/** Returns the element that a key operates; undefined if the key has no function. If drags are
+ * already restricted to the axis or plane that the key selects, returns the element `free` instead,
+ * which removes the restriction. */
 function controlOf(key: string): HTMLElement | undefined {
   const controls = [...document.querySelectorAll<HTMLElement>("[data-key]")];
   const found = controls.find(it => it.dataset["key"]?.split(" ").includes(key));

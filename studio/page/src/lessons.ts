@@ -224,8 +224,8 @@ function choose(i: number): void {
   title.focus();
 }
 
-/** Shows for each condition of the current step whether it holds, and how many of them hold. If all
- * conditions of the lesson hold, says that it is solved. */
+/** Shows for each condition of the current step whether it holds, and how many conditions hold. If
+ * all conditions of the lesson hold, says that the lesson is solved. */
 function showConditions(): void {
   if (isList || current === null) return;
   const all = fill(current.steps[step] ?? [], [...body.children]);

@@ -56,8 +56,8 @@ const NAMED: Record<string, "above" | "below"> = { eye: "above", lookat: "below"
 
 /** Distances of labels from their handles: above and below. */
 const SIDES = ["-1.1em", "1.9em"];
-/** Width of an SVG of the view, in its own units: that of a printed page in CSS pixels, so that
- * labels are as large as on paper. */
+/** Width of an SVG of the view, in units of the SVG. It equals the width of a printed page, 180 mm,
+ * in CSS pixels, so that labels are as large as on paper. */
 const SVG_WIDTH = 680;
 
 /** Returns the handles of the scene's camera. */

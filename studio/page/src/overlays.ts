@@ -15,8 +15,8 @@ const boxes = [...document.querySelectorAll<HTMLInputElement>("#layers [name]")]
 const EDGE = 14;
 
 class OverlayLayer {
-  /** Overlays of the newest text. While the newest text has errors, the overlays are those of the
-   * last text without errors. */
+  /** Overlays that the server has sent last; null if it has sent none yet. For a text with errors,
+   * it sends none. */
   data: Overlays | null = null;
   /** Whether `data` belongs to the current text. */
   isTrue = true;

@@ -161,7 +161,7 @@ test("the camera orbits about its lookat point", async t => {
 
 test("objects and camera can be moved by keyboard alone", async t => {
   const page = await open(await launch(t), await host(t));
-  // The Tab key alone leads from the top of the page to the picture.
+  // The Tab key alone leads from the top of the page to the list of objects.
   for (let i = 0; i < 60; i++) {
     await page.keyboard.press("Tab");
     if (await page.evaluate(() => document.activeElement.id === "objects")) break;

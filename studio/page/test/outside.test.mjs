@@ -491,7 +491,7 @@ test("a sheet of paper has picture, view and text on one page, whatever the wind
 });
 
 test("handles that are moved aside stay in the view, and the far plane is in it", async t => {
-  // Fingers need larger handles, so more of them are moved aside.
+  // With a touch screen, handles are larger, so more handles are moved aside to avoid overlaps.
   const page = await open(await launch(t), await host(t, FIGURE.replace("d      2.75", "d      2.75\n  far    14")), { viewport: { width: 1280, height: 720 }, hasTouch: true });
   await outside(page);
   const box = await page.locator("#outside").boundingBox();

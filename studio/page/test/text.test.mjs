@@ -187,8 +187,8 @@ test("texts and names of a scene are never interpreted as HTML", async t => {
     await page.waitForTimeout(500);
   }
   assert.equal(await page.evaluate(() => window.hit), undefined);
-  // Except for the figures in the language reference, the page must have no pictures, and its body
-  // no scripts.
+  // The HTML in the texts must not become pictures or scripts. The only pictures of the page are
+  // the figures in the language reference.
   assert.equal(await page.locator("img:not(.cm-widgetBuffer, #language-dialog img), body script").count(), 0);
 });
 

@@ -33,7 +33,8 @@ const isOfPage = ({ scheme }) => ["studio", "drag"].includes(scheme);
 
 const isPosition = it => [it?.line, it?.character].every(number => Number.isInteger(number) && number >= 0);
 
-/** Opens panels, one at a time, and has them follow the scene in the active editor. */
+/** Opens the panel with the picture. At most one panel is open; it shows the scene in the active
+ * editor. */
 class Pictures {
   panel;
   client;

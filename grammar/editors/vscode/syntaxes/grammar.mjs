@@ -53,7 +53,7 @@ const WORD_OF_THE_LANGUAGE = `(?:(?i:${colors.join("|")})|pi|deg|rad)\\b`;
 // `tan` is also a colour; it is a function only before a parenthesis.
 const FUNCTION = `(?:${functions.map(name => (name === "tan" ? "tan(?=\\s*\\()" : name)).join("|")})\\b`;
 const QUOTED = "\"[^\"]*\"?|'[^']*'?";
-// The operators include some that the language lacks but that people use by mistake.
+// Operators, including some that the language does not have. People use them by mistake.
 const OPERATOR = "\\*\\*|[-+*/^%×·÷−]";
 
 // A line that starts with the head of a block ends the block above it, whose closing brace may be
