@@ -11,7 +11,7 @@ const [host = "served", folder = "dist"] = process.argv.slice(2);
 if (host !== "served" && host !== "static") throw new Error(`there is no host ${host}: it is served or static`);
 mkdirSync(folder, { recursive: true });
 
-/** Scenes of the menu: the gallery's, in its order, and an empty one to build from. */
+/** The gallery of examples. The menu of the page lists its scenes, in the same order. */
 const gallery = readFileSync("../../examples/README.md", "utf8");
 const examples = [...gallery.matchAll(/^\|.*\]\((\w+)\.scn\)/gm)].map(([, name]) => [name, readFileSync(`../../examples/${name}.scn`, "utf8")]);
 const folderOfLessons = "../../examples/lessons";
@@ -59,8 +59,8 @@ const policy = [
 ].join("; ");
 // The page contains the reference of the language, without its links, which would leave the page.
 const renderer = new Renderer();
-// Figures are part of the served page, which loads no other file. The static page has no room for
-// them.
+// The served page contains the figures, since it loads no other file. In the static page, they are
+// left out, because site.mjs limits its size.
 renderer.image = ({ href, text }) => {
   if (host === "static") return "";
   const svg = readFileSync(path.join("../../grammar", href), "utf8").replaceAll("\n", "");
@@ -68,8 +68,8 @@ renderer.image = ({ href, text }) => {
 };
 renderer.link = function ({ tokens }) { return this.parser.parseInline(tokens); };
 renderer.heading = function ({ tokens, depth }) { return `<h${depth + 2}>${this.parser.parseInline(tokens)}</h${depth + 2}>`; };
-// The end of the reference is left out, from the section on overrides on. It is about the command
-// line, and about the layout, which Shift-Alt-F writes.
+// The page's reference ends before the section on overrides. The rest is about the command line and
+// its reports, and about the layout of the text, which Shift-Alt-F produces.
 const [reference, ...end] = readFileSync("../../grammar/language.md", "utf8").replace(/^# .*\n/, "").split("\n## Overrides\n");
 if (end.length !== 1) throw new Error("the reference has no section on overrides to end before");
 let page = readFileSync("src/index.html", "utf8").replace("__REFERENCE__", () => marked.parse(reference, { renderer }));

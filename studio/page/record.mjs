@@ -78,7 +78,7 @@ function recorder() {
     palette ??= gifenc.quantize(data, SAME);
     const indexed = gifenc.applyPalette(data, palette);
     const changes = before ? indexed.map((index, at) => (index === before[at] ? SAME : index)) : indexed;
-    // A palette of 256 colours, the last of which is unused.
+    // The palette is filled up to 256 colours. The last one, with index `SAME`, is not visible.
     const colors = [...palette, ...Array.from({ length: 256 - palette.length }, () => [0, 0, 0])];
     encoder.writeFrame(changes, width, height, { palette: before ? undefined : colors, delay, transparent: before !== undefined, transparentIndex: SAME, dispose: 1 });
     before = indexed;

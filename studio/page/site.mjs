@@ -8,8 +8,8 @@ import path from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 
-/** Maximum size of the site in bytes, with each file compressed as a server sends it: a megabyte,
- * which a phone loads in a few seconds. What is for lessons takes the last tenth of it. */
+/** Maximum size of the site in bytes, with each file compressed as a server sends it. A phone loads
+ * a megabyte in a few seconds. A tenth of it is meant for lessons. */
 const LIMIT = 1_000_000;
 
 const page = path.dirname(fileURLToPath(import.meta.url));
@@ -23,8 +23,8 @@ const run = (program, ...args) => execFileSync(program, args, { cwd: page, stdio
 // Optimizing for size inlines hardly anything; a little inlining makes frames about twice as fast,
 // and the engine 1 % larger.
 const inlining = ["-C", "llvm-args=-inline-threshold=4"];
-// Panics contain paths of source files. Without this machine's folders they are short, and the site
-// has the same size on every machine.
+// Messages of panics contain paths of source files. This machine's folders are removed from the
+// paths, so that the site has the same size on every machine.
 const sources = path.join(process.env.CARGO_HOME ?? path.join(homedir(), ".cargo"), "registry/src");
 const registries = existsSync(sources) ? readdirSync(sources) : [];
 const short = registries.map(registry => `--remap-path-prefix=${path.join(sources, registry)}/=`);
@@ -34,10 +34,11 @@ execFileSync("cargo", ["rustc", "--locked", "--profile", "site", "--target", was
 run("cargo", "run", "--locked", "--quiet", "--config", "profile.dev.debug=false", "--package", "pinhole-studio-bindgen", "--", path.join(target, wasm, "site/pinhole_studio_engine.wasm"), engine);
 rmSync(site, { recursive: true, force: true });
 run("node", "build.mjs", "static", site);
-// This level gives the smallest compressed size; higher ones write less code that compresses worse.
+// The level -O1 gives the smallest compressed size. Higher levels write less code, but this code
+// compresses worse.
 const optimizer = path.join(page, "node_modules/binaryen/bin/wasm-opt");
-// The lowest thousand bytes of memory are the end of the stack, so offsets can be folded into
-// loads.
+// No data is in the lowest 1024 bytes of memory, which are the far end of the stack. Therefore, the
+// optimizer may fold offsets into loads.
 const adding = ["--low-memory-unused", "--optimize-added-constants-propagate"];
 const passes = ["-O1", "--dae-optimizing", "--rse", "--precompute-propagate", "--code-folding", "--converge", ...adding, "--reorder-locals", "--merge-blocks"];
 run("node", optimizer, ...passes, path.join(engine, "pinhole_bg.wasm"), "-o", path.join(site, "pinhole_bg.wasm"));

@@ -70,8 +70,8 @@ fn assert_stops_early<T>(what: &str, work: impl Fn(&AtomicBool) -> Result<T, Can
 
 #[test]
 fn reading_stops_soon_after_cancellation_in_every_mode() {
-    // Large enough that each reading takes some tens of milliseconds, which is much longer than the
-    // start of a thread.
+    // The texts are so long that reading one takes some tens of milliseconds, which is much longer
+    // than the start of a thread.
     let good = spheres(20_000);
     let lets = (0..6_000).map(|index| format!("let a_{index} = 1 + 2 * {index}\n"));
     let lets: String = lets.collect();

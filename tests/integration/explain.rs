@@ -2,10 +2,10 @@
 //! wrong scene of a page has only the mistake that the page explains; its right scene has no
 //! mistake.
 //!
-//! A scene is a fenced block `scn` or `scn escaped`. In the latter, escapes such as `\xE9` stand
-//! for bytes, and escapes such as `\u{A0}` for invisible characters. A fenced block `console` below
-//! a scene has a command; the scene is read with the command's `--set` arguments. `PINHOLE_BLESS=1
-//! cargo test explain` rewrites the index of the pages.
+//! A scene is a fenced block `scn` or `scn escaped`. In a block `scn escaped`, escapes such as
+//! `\xE9` stand for bytes, and escapes such as `\u{A0}` for invisible characters. A fenced block
+//! `console` below a scene has a command; the scene is read with the command's `--set` arguments.
+//! `PINHOLE_BLESS=1 cargo test explain` rewrites the index of the pages.
 
 use std::{collections::BTreeSet, path::Path};
 

@@ -2,7 +2,7 @@
 //! `cargo test -- --ignored processors`.
 //!
 //! The program detects vector instructions at run time. So the same binary runs other code on a
-//! processor that lacks them.
+//! processor without these instructions.
 
 use std::{env, fs, io::Cursor, path::Path, process::Command};
 

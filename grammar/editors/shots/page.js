@@ -1,9 +1,8 @@
 // The page of the screenshots: Monaco, the editor of VS Code, which gets all answers from Pinhole's
 // language server.
 //
-// `window.ask` sends a request to the server, and `window.tell` a notification; the server's
-// notifications are passed to `window.told`. All three use the protocol's JSON, which this file
-// converts to Monaco's types.
+// `window.ask` sends a request to the server, and `window.tell` a notification. `window.told` gets
+// the server's notifications. This file converts the JSON of these messages to Monaco's types.
 
 import * as monaco from "monaco-editor";
 import { colors, types } from "./theme.js";
@@ -24,14 +23,15 @@ const fromRange = ({ start, end }) => ({
 });
 const markdown = content => (typeof content === "string" ? { value: content } : { value: content.value });
 const severities = [undefined, monaco.MarkerSeverity.Error, monaco.MarkerSeverity.Warning, monaco.MarkerSeverity.Info, monaco.MarkerSeverity.Hint];
-/** Kinds of completion in the protocol's order, which counts from 1 and differs from Monaco's. */
+/** Kinds of completions, in the order of the protocol's numbers, which begin with 1. Monaco has
+ * other numbers for them. */
 const kinds = [
   "Text", "Method", "Function", "Constructor", "Field", "Variable", "Class", "Interface", "Module", "Property", "Unit", "Value",
   "Enum", "Keyword", "Snippet", "Color", "File", "Reference", "Folder", "EnumMember", "Constant", "Struct", "Event", "Operator",
   "TypeParameter",
 ];
 
-/** The last diagnostics from the server. */
+/** The newest diagnostics from the server. */
 let diagnostics = [];
 
 function provide(capabilities, model) {

@@ -1,6 +1,5 @@
-// Takes the README's screenshots of an editor: Monaco, the editor of VS Code, in headless Chromium,
-// with the real `pinhole lsp`. Nothing in the pictures is drawn by hand; all highlighting and all
-// answers come from the server.
+// Takes the README's screenshots of an editor. Headless Chromium shows Monaco, the editor of VS
+// Code, with the real `pinhole lsp`, from which all highlighting and all answers come.
 //
 //     npm ci && PINHOLE=../../../target/release/pinhole npm run shoot
 
@@ -98,8 +97,8 @@ async function take(browser, { name, width, height, scene, prepare }) {
 }
 
 /**
- * The actions of shots in the editor. A position is given by the text before it, which occurs
- * once in the scene.
+ * Returns the actions that screenshots can use in the editor. A position is given by the text
+ * before it, which must occur only once in the scene.
  */
 function editing(page) {
   const at = async before => page.evaluate(before => {
@@ -110,7 +109,7 @@ function editing(page) {
     window.editor.focus();
   }, before);
   const trigger = id => page.evaluate(id => window.editor.trigger("shot", id, {}), id);
-  /** Moves down the list of completions to one of them. */
+  /** Moves the selection in the list of completions down to the completion `label`. */
   const choose = async label => {
     const chosen = () => page.evaluate(() => document.querySelector(".suggest-widget .monaco-list-row.focused .label-name")?.textContent);
     for (let tries = 0; (await chosen()) !== label; tries++) {

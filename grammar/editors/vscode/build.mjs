@@ -2,7 +2,7 @@
 //
 // - the extension with its dependencies and their licences;
 // - the page of Pinhole Studio, for the panel with the picture;
-// - its page, with embedded pictures;
+// - the extension's README, with embedded pictures;
 // - Pinhole's own licences;
 // - the program that the environment variable BUNDLE names, if it is set.
 
@@ -35,7 +35,7 @@ mkdirSync("dist/page", { recursive: true });
 for (const file of ["index.html", "studio.js", "studio.css", "LICENSES.txt"]) copyFileSync(`../../../studio/page/dist/${file}`, `dist/page/${file}`);
 copyFileSync("src/panel.css", "dist/page/panel.css");
 
-// The pictures are embedded in the page, since the editor loads no pictures from elsewhere.
+// The README's pictures are embedded in it, since the editor would not load them as files.
 const page = readFileSync("README.md", "utf8");
 writeFileSync("dist/README.md", page.replace(/\]\(([^)]+\.png)\)/g, (_, file) => `](data:image/png;base64,${readFileSync(file, "base64")})`));
 

@@ -33,8 +33,8 @@ impl Engine {
         }
     }
 
-    /// Returns the first message of the protocol: `studio/file` with a new scene, which is in no
-    /// file.
+    /// Returns the first message of the protocol: `studio/file` with a new scene, which has no file
+    /// yet.
     pub fn greeting(&self) -> String {
         let params = json!({ "name": "scene.scn", "text": SMALLEST, "saved": false });
         messages::to_text(&Notification::new("studio/file".to_owned(), params).into())

@@ -13,7 +13,7 @@ declare module "pinhole-engine" {
 
 /** Names and texts of the example scenes. The build inserts them into the page. */
 declare const EXAMPLES: [string, string][];
-/** The lessons, in the order of the list. The build inserts them into the page. */
+/** The lessons, in the order of the page's list of lessons. The build inserts them. */
 declare const LESSONS: { name: string; text: string; start: string }[];
 /** Text of a new scene. */
 declare const EMPTY: string;

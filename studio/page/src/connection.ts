@@ -12,10 +12,11 @@ import { Refusal } from "./protocol";
 /** An open channel that sends texts to the engine. */
 interface Wire { send(text: string): void }
 
-/** Reason why there is no connection. After `lost`, `ended` (the host ended) and `failed` (the
- * worker failed), the page reconnects by itself. After the other reasons, the user must open an
- * address that the host has printed: the page has no token (`keyless`), or its token is unknown, is
- * from an earlier run of the host (`restarted`), was sent too late, or was sent twice. */
+/** Reason why there is no connection. After `lost`, `ended` (the host has ended) and `failed` (the
+ * worker or VS Code's server has failed), the page reconnects by itself. After the other reasons,
+ * the user must open an address that the host has printed. `keyless`: the page has no token.
+ * `restarted`: the token is from an earlier run of the host. `late` and `twice`: the token was sent
+ * after its lifetime, or a second time. */
 type Closed = "lost" | "ended" | "failed" | "keyless" | "unknown" | "restarted" | "late" | "twice";
 const TRIED_AGAIN: Closed[] = ["lost", "ended", "failed"];
 
@@ -34,10 +35,10 @@ const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
 /** Silence of the server, in ms, after which the page sends a test request. A shorter time would
  * cause more requests; a longer one would delay the notice that the server does not reply. */
 const QUIET = 700;
-const HANGING = 1200; // wait for the reply, in ms, after which it is reported as late
+const HANGING = 1200; // time after which a reply to a test request is late, in ms
 
-/** Prefix of the ids of the page's own requests. The language client's requests have ids without
- * it, so an answer's id tells to whom the answer belongs. */
+/** Prefix of the ids of the page's own requests. Answers with other ids are for the language
+ * client. */
 const OWN = "page-";
 const NO_CONNECTION = "This cannot be done without a connection.";
 
@@ -66,15 +67,15 @@ class Connection implements Transport {
   private current = 0;
   /** Time of the last message from the server, in ms since the page was loaded. */
   private heard = 0;
-  /** Time at which the test request that has no reply yet was sent, in ms since the page was
-   * loaded; 0 if there is no such request. */
+  /** Time at which the unanswered test request was sent, in ms since the page was loaded; 0 if no
+   * test request is unanswered. */
   private asked = 0;
   private hangs = false;
 
   constructor(private readonly connector: Connector) {
     setInterval(() => this.listen(), 250);
-    // Browsers stop the timers of hidden pages, so the time that an open test request has waited
-    // does not show whether the server replies. Therefore, the request is forgotten.
+    // Browsers stop the timers of hidden pages. When a page is hidden or shown, the age of an
+    // unanswered test request therefore says nothing about the server, so the request is forgotten.
     document.addEventListener("visibilitychange", () => (this.asked = 0));
   }
 
@@ -126,8 +127,8 @@ class Connection implements Transport {
     const id = OWN + ++this.requests;
     return new Promise<Result>((resolve, reject) => {
       this.waiting.set(id, { resolve, reject });
-      // While the request waits for `ready`, the connection may be lost, or the request aborted. It
-      // is then no longer in `waiting`, and is not sent.
+      // The request waits for `ready`. If the connection is lost or the request is aborted in this
+      // time, the request is removed from `waiting`, and must not be sent.
       this.ready().then(() => {
         if (!this.waiting.has(id)) return;
         this.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
@@ -147,8 +148,8 @@ class Connection implements Transport {
   }
 
   private receive(text: string): void {
-    // The pauses between attempts to reconnect start anew. This is done at the first message, not
-    // when the channel opens, because a failing server may accept connections.
+    // The next attempts to reconnect begin with the shortest pause again. The count is reset at the
+    // first message, not when the channel opens, because a failing server may accept connections.
     this.attempts = 0;
     this.heard = performance.now();
     this.asked = 0;
@@ -169,8 +170,8 @@ class Connection implements Transport {
     for (const waiting of this.waiting.values()) waiting.reject(lost);
     this.waiting.clear();
     if (!TRIED_AGAIN.includes(why)) return this.enter(why);
-    // After the host has ended, the state remains `ended` until a new connection opens, although
-    // attempts to reconnect fail with other reasons.
+    // The state `ended` remains until a new connection opens. Failed attempts to reconnect must not
+    // replace it by another reason.
     const isSilent = why === "lost" && this.attempts >= PAUSES.length;
     if (this.state !== "ended") this.enter(isSilent ? "silent" : why);
     const pause = PAUSES[Math.min(this.attempts++, PAUSES.length - 1)];
@@ -184,12 +185,12 @@ class Connection implements Transport {
   }
 }
 
-/** The socket of the latest attempt to connect. Earlier ones are closed, so that their late answers
- * do not replace a newer token. */
+/** The socket of the latest attempt to connect. Earlier sockets are closed, so that their late
+ * answers do not replace a newer token. */
 let latest: WebSocket | undefined;
 
-/** Opens a WebSocket and sends the page's token. The host's first message contains the token to use
- * next time; after it, the channel is open. */
+/** Opens a WebSocket and sends the page's token. The host's first message contains the token for
+ * the next connection. After this message, the channel is open. */
 const webSocket: Connector = (opened, receive, closed) => {
   const { token } = session;
   if (token === null) return closed("keyless");
@@ -224,8 +225,8 @@ const worker: Connector = (opened, receive, closed) => {
   });
 };
 
-/** Asks the panel's extension for a conversation. Its first text opens the channel; `ended` closes
- * it. */
+/** Asks the VS Code extension for a connection to the server. The extension's first text opens the
+ * channel; its text `ended` closes the channel. */
 const extension: Connector = (opened, receive, closed) => {
   let isOpen = false;
   window.onmessage = ({ data }: MessageEvent<unknown>) => {

@@ -39,8 +39,8 @@ function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
   const ofAll = actions.filter(action => action.diagnostics === undefined);
   const shown = diagnostics.map((diagnostic): Diagnostic => {
     const fixes = mending.get(keyOf(diagnostic)) ?? [];
-    // Fixes that belong to no single problem mend several problems at once. They are listed once,
-    // at the first problem with a fix of its own.
+    // A fix without `diagnostics` mends several problems at once. Such fixes are listed only once,
+    // at the first problem that also has a fix of its own.
     const all = fixes.length > 0 ? ofAll.splice(0) : [];
     return {
       from: editor.offset(diagnostic.range.start),
@@ -69,9 +69,9 @@ function fix(action: CodeAction): Action {
       // The edits fit only the text that was checked. If the text has changed since, they are not
       // applied; diagnostics of the new text will arrive.
       if (view.state.doc !== doc) return;
-      // The fix inserts an example value. This value is selected, so that typing replaces it. Its
-      // range is in bytes, which are equal to characters here, because a fix with an example value
-      // inserts only ASCII.
+      // If the fix inserts an example value, the value is selected, so that typing replaces it. The
+      // server gives the value's range in bytes. Here, a byte is a character, because a fix with an
+      // example value inserts only ASCII.
       const at = edits[0] ? editor.offset(edits[0].range.start) : 0;
       const made = value && { selection: { anchor: at + value[0], head: at + value[1] } };
       const changes = editor.changes(edits);

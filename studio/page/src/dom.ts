@@ -114,7 +114,7 @@ export function remember(key: string, value: string, where: Store = "localStorag
   if (panel) return panel.setState({ ...panel.getState(), [key]: value });
   try {
     window[where].setItem(`pinhole-${key}`, value);
-  } catch { /* The page works without. */ }
+  } catch { /* The page works without stored settings. */ }
 }
 
 type Store = "localStorage" | "sessionStorage";

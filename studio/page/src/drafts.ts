@@ -115,9 +115,9 @@ function answer(draft: Draft, isRestored: boolean): void {
   if (isRestored) {
     due.delete(draft.id);
     restored = draft;
-    // Before the host has sent its state, it is not known whether the host, too, has stored this
-    // draft. From now on, the page stores its own drafts under the key of this draft. They replace
-    // the host's copy if there is one.
+    // Before the host has sent its state, the page does not know whether the host has stored this
+    // draft, too. Therefore, the page now stores its own drafts under the key of this draft. They
+    // replace the host's copy if there is one.
     if (!files.isTold) id = draft.id;
     files.restore(draft.text, draft.base, draft.name);
   }
@@ -151,7 +151,8 @@ const all = async () => (await values<Draft>(store)).sort((a, b) => b.time - a.t
 
 /** Stores a draft under the key `id`. If `draft` is null, deletes the stored one. */
 async function stored(id: string, draft: Draft | null): Promise<void> {
-  // The host gets the draft without delay, since the browser's storage may fail or be slow.
+  // The draft is sent to the host before the browser has stored it, since the browser's storage may
+  // fail or be slow.
   const here = storedHere(id, draft).catch(error => { if (!isServed) throw error; });
   await (isServed ? connection.request("studio/draft", draft ?? { id, text: null }) : here);
 }

@@ -1,7 +1,7 @@
-// A drag of an object's handle or of the camera. The server computes each edit from three things:
-// the text before the drag, the point where the pointer was pressed, and the pointer's newest
-// point. The editor's text has changed by then. Therefore, the page opens the text before the drag
-// as a separate document at the server.
+// A drag of an object's handle or of the camera. The server computes each edit from the text before
+// the drag, the point where the pointer was pressed, and the pointer's newest point. Since the
+// editor's text changes during the drag, the page opens the text before the drag as a separate
+// document at the server.
 
 import { byId, followPointer, newestOf } from "./dom";
 import { editor } from "./editor";
@@ -16,8 +16,8 @@ import { setText } from "./visible";
  * `object` is null for a handle of the camera. */
 export interface Held { object: number | null; handle: string; at: Point }
 
-/** A picture in which drags take place. `view` is the camera that shows it, or null if that is the
- * scene's own. */
+/** A picture in which drags take place. `view` is the camera of the picture; null stands for the
+ * scene's own camera. */
 export interface Surface { readonly picture: Picture; readonly view: View | null }
 const own: Surface = { picture, view: null };
 

@@ -24,7 +24,7 @@ import { sanitized } from "./sanitize";
  * longer time would be felt as a pause. */
 const DIFF_TIME = 100;
 
-/** Matches unpaired surrogates. UTF-8, in which files and messages are written, has none. */
+/** Matches unpaired surrogates. UTF-8, the encoding of files and messages, cannot contain them. */
 const HALVES = /\p{Surrogate}/gu;
 
 /** Replaces typed or pasted unpaired surrogates by U+FFFD, the replacement character. */
@@ -105,8 +105,8 @@ class SceneEditor {
 
   constructor(parent: HTMLElement, nonce: string | undefined) {
     this.client = new SceneClient({
-      // A request fails after this time, in ms. It is long, because a busy machine may answer
-      // slowly; a lost connection is noticed elsewhere.
+      // Time after which a request fails, in ms. It is long, because a busy machine may answer
+      // slowly. A lost connection is noticed earlier, by `connection`.
       timeout: 60_000,
       sanitizeHTML: sanitized,
       unhandledNotification: (_, method, params) => this.onNotification(method, params),
@@ -159,8 +159,8 @@ class SceneEditor {
     return connection.request(method, { textDocument: { uri: this.uri }, ...params });
   }
 
-  /** Sends a request about the scene. Resolves to null if the request fails. Some answers of
-   * the server are null, too, if the text has errors. */
+  /** Sends a request about the scene. Resolves to null if the request fails. The server also
+   * answers some requests with null if the text has errors. */
   async ask<Result>(method: string, params: object): Promise<Result | null> {
     try {
       return await this.request<Result | null>(method, params);
@@ -183,7 +183,8 @@ class SceneEditor {
     return { start: this.position(from), end: this.position(to) };
   }
 
-  /** Replaces the text and its undo history. With an empty one, Undo cannot remove the new text. */
+  /** Replaces the text and its undo history. With the default, an empty history, Undo cannot remove
+   * the new text. */
   open(text: string, past: Extension = []): void {
     const changes = { from: 0, to: this.view.state.doc.length, insert: text };
     rewrite(this.view, { changes, selection: { anchor: 0 } }, past);
@@ -205,9 +206,9 @@ class SceneEditor {
       Prec.highest(EditorState.readOnly.of(false)), this.client.plugin(this.uri, "pinhole")]) });
   }
 
-  /** Replaces the text by changing only what differs, so that the cursor stays. If an insertion or
-   * deletion can start at the beginning of a line with the same result, it does so. For example, if
-   * two blocks begin alike, inserting the second is a change of whole lines. */
+  /** Replaces the text by changing only what differs, so that the cursor stays. An insertion or
+   * deletion starts at the beginning of a line if the result is the same. For example, a new block
+   * that begins like the next block is inserted as whole lines. */
   replace(content: string): void {
     const [old, text] = [this.text, withLf(content)];
     let end = 0;

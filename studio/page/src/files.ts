@@ -31,12 +31,12 @@ class Scene {
   /** Whether the file was removed after it was read. */
   isGone = false;
   handle: FileSystemFileHandle | null = null;
-  copy: Scene | null = null; // the copy by which Save as has replaced this scene
+  copy: Scene | null = null; // copy that replaced this scene when it was saved by Save as
   /** Whether the host has no file for the scene yet, so that Save asks for a name. */
   isNew = isServed;
   /** Initial text of a new scene, which need not be saved; null if the scene comes from a file. */
   untouched: string | null = null;
-  /** `link` if the scene was in a link. */
+  /** `link` if the scene comes from a link; null otherwise. */
   from: "link" | null = null;
 
   /** Creates a scene. If `of` is given, the new scene is a copy of `of` under another name, and
@@ -46,7 +46,8 @@ class Scene {
   /** Last known content of the file, or the initial text if there is no file. */
   get held(): string { return this.seen ?? this.untouched ?? ""; }
 
-  /** Returns whether `text` is neither in the file nor the initial text. */
+  /** Returns whether `text` differs from the file's content and from the initial text. In a panel,
+   * VS Code saves the text, so the result is always false. */
   isChangedBy(text: string): boolean {
     const { isGone, seen, untouched } = this;
     return !panel && (untouched === null || text !== withLf(untouched))
@@ -144,15 +145,16 @@ class Files {
   /** Whether the scene of a lesson is shown. */
   get isLesson(): boolean { return this.own !== null; }
 
-  /** Handles what has happened to the host's file while another scene was shown. Does so later,
-   * because the host's scene may be about to be replaced again, or a transaction may be under
-   * way. */
+  /** Handles a change of the host's file that arrived while another scene was shown. The change is
+   * handled in a microtask, because now a transaction may be under way, or another scene may be
+   * about to replace the host's scene again. */
   private followHost(): void {
     queueMicrotask(() => { if (this.at === this.hosts && this.late) this.hosted(this.late); });
   }
 
-  /** Replaces the shown scene by the scene `to` with this text. Undo restores the old scene. A
-   * lesson's scene is not restored: the user's own scene takes its place first. */
+  /** Replaces the shown scene by the scene `to` with this text. Undo restores the old scene. If a
+   * lesson's scene is shown, the user's own scene first replaces it, so Undo restores the own
+   * scene. */
   private begin(text: string, to = new Scene()): void {
     if (!this.isTold) return say("Studio is not ready yet.", "warning");
     this.closeLesson();
@@ -164,9 +166,8 @@ class Files {
       effects: turns.of({ from: this.at, to }) });
   }
 
-  /** Makes the scene that the editor shows the current scene, after Undo, Redo or the start of a
-   * new scene. If this scene was saved under another name, its newest copy becomes the current
-   * scene. */
+  /** After Undo, Redo or the start of a new scene, sets `at` to the scene that the editor shows. If
+   * this scene was saved under another name, sets `at` to its newest copy. */
   follow(transactions: readonly Transaction[]): void {
     for (const { effects } of transactions) for (const it of effects) {
       if (!it.is(turns)) continue;
@@ -200,8 +201,8 @@ class Files {
     const { name, text, reason, saved } = file;
     unsay(NOT_SAVED);
     Object.assign(this.hosts, { name, isNew: isServed && !saved });
-    // While the page shows another scene, the text in the editor is not the host's, so it is not
-    // replaced.
+    // While the page shows another scene, the text of the host's file must not replace that scene's
+    // text. It is handled later.
     this.late = this.at === this.hosts ? null : file;
     if (this.late !== null) return this.show();
     if (!this.isTold) {
@@ -405,7 +406,8 @@ class Files {
   }
 }
 
-/** Returns `text` with the line ends of `file`. A new line ends as the line before it does. */
+/** Returns `text` with the line ends of `file`. A line that is not in `file` gets the line end of
+ * the line before it. */
 export function withEndsOf(file: string, text: string): string {
   if (!file.includes("\r")) return text;
   const ends = file.match(/\r\n?|\n/g)?.map(end => end === "\r" ? "\n" : end) ?? [];
@@ -422,7 +424,8 @@ export function withEndsOf(file: string, text: string): string {
 const CLASSES = { " ": "", "-": "removed", "+": "added" };
 interface DifferenceLine { sign: " " | "-" | "+"; text: string }
 
-/** Compares two texts. Returns the first to the last differing line, and two lines around them. */
+/** Compares two texts. Returns the lines from the first to the last difference, and up to two more
+ * lines before and after them. */
 export function difference(one: string, other: string): DifferenceLine[] {
   const lines = compared(one.split("\n"), other.split("\n"));
   const differs = ({ sign }: DifferenceLine) => sign !== " ";

@@ -1,17 +1,17 @@
-// Pointers pressed on a picture. Two of them, which are fingers, shift and zoom it together.
+// Pointers that are pressed on a picture. Two fingers together shift and zoom the picture.
 
 import { CLICK } from "./drag";
 import { endKeys } from "./keys";
 import type { Picture } from "./picture";
 import type { Point } from "./protocol";
 
-/** Returns the distance of two points, or 1 if they are nearer, since it is a divisor. */
+/** Returns the distance of two points, but at least 1, because callers divide by it. */
 const distance = (a: Point, b: Point) => Math.max(1, Math.hypot(a[0] - b[0], a[1] - b[1]));
 
 export class Fingers {
-  /** Cancels what the first pointer has begun. */
+  /** Cancels the action that the first pointer has begun, such as a drag. */
   giveUp = (): void => {};
-  /** Called when a pressed pointer moves by screen pixels while no other one is pressed. */
+  /** Called with the movement, in screen pixels, of a pointer that is pressed alone. */
   onAlone: (by: Point, event: PointerEvent) => void = () => {};
   /** Last position of each pressed pointer, by its id. */
   private readonly places = new Map<number, Point>();
@@ -20,13 +20,13 @@ export class Fingers {
   isAlone = Promise.resolve(true);
   private decide: (isAlone: boolean) => void = () => {};
 
-  /** Distance of two fingers when the second one was pressed. */
+  /** Distance of the two fingers, in screen pixels, when the second one was pressed. */
   private spread = 1;
-  /** Length of the way of the pointers since the last press. */
+  /** Total length of all movements since the last press, in screen pixels. */
   private way = 0;
 
-  /** `zoom` zooms by a factor, about a point of the stage. It also gets the product of all factors
-   * since the second finger was pressed. `pan` shifts by screen pixels. */
+  /** `zoom` zooms by a factor, about a point of the stage. Its last argument is the product of all
+   * factors since the second finger was pressed. `pan` shifts the picture by screen pixels. */
   constructor(private readonly picture: Picture,
     private readonly zoom: (factor: number, about: Point, total: number) => void,
     private readonly pan: (by: Point) => void) {
@@ -37,8 +37,8 @@ export class Fingers {
     stage.addEventListener("contextmenu", event => event.preventDefault());
   }
 
-  /** Follows a pressed pointer. Returns whether it is the first one. A second one cancels what the
-   * first has begun. */
+  /** Follows a pressed pointer. Returns whether it is the only pressed pointer. A second pointer
+   * cancels the action of the first one. */
   press(event: PointerEvent): boolean {
     const { picture, picture: { stage }, places } = this;
     const at = picture.local(event);
@@ -65,8 +65,9 @@ export class Fingers {
     this.way += Math.hypot(...by);
     if (this.way > CLICK) this.decide(true);
     if (other === undefined) return this.onAlone(by, event);
-    // The browser reports the fingers one after the other. The picture is zoomed about their middle
-    // and shifted with it, so that the two zooms of a shift cancel each other.
+    // The browser reports the movements of the two fingers one after the other. Each movement zooms
+    // the picture about the middle between the fingers, and shifts it by half the movement. If both
+    // fingers move in the same direction, the two zooms cancel each other.
     const middle: Point = [(before[0] + other[0]) / 2, (before[1] + other[1]) / 2];
     const now = distance(at, other);
     this.zoom(now / distance(before, other), middle, now / this.spread);

@@ -6,11 +6,11 @@ import { Annotation, ChangeSet, Compartment, EditorState, StateField, type Chang
   Extension, type Range, type Text, type TransactionSpec } from "@codemirror/state";
 import { Decoration, EditorView, type DecorationSet } from "@codemirror/view";
 
-/** Marks a change of the text as the first or a later one of a gesture (a drag, for example). */
+/** Marks a change of the text as the first change of a gesture, or as a later one. */
 const step = Annotation.define<"first" | "next">();
 
-/** Pause in typing, in ms. What is typed before and after such a pause is undone separately. The
- * value is CodeMirror's default. */
+/** Maximum pause in typing, in ms, after which the text before and after the pause is still undone
+ * together. The value is CodeMirror's default. */
 const TYPING_PAUSE = 500;
 const touched = Decoration.mark({ class: "touched" });
 
@@ -29,16 +29,17 @@ const touchedField = StateField.define<DecorationSet>({
   provide: field => EditorView.decorations.from(field),
 });
 
-/** Part of the editor's configuration that contains the undo history, so it can be replaced. */
+/** Part of the editor's configuration that contains the undo history. With it, `rewrite` replaces
+ * the history. */
 const kept = new Compartment();
 
 function grouped(past: Extension = []): Extension {
   let last = 0;
   return [
     history({
-      // CodeMirror undoes two changes separately if the time between them is longer than this
-      // value. It is longer than any session, so `joinToEvent` alone decides. Only changes that are
-      // marked as isolated are always undone alone.
+      // CodeMirror undoes two changes separately if the time between them, in ms, is longer than
+      // this value. The value is longer than any session, so `joinToEvent` decides instead, except
+      // for changes that are marked by `isolateHistory`.
       newGroupDelay: 1e11,
       joinToEvent: (transaction, isAdjacent) => transaction.annotation(step) === "next"
         || (isAdjacent && Date.now() - last < TYPING_PAUSE),
@@ -106,8 +107,8 @@ export class Gesture {
     this.current = view.state.doc;
   }
 
-  /** Ends the gesture. If the text is the same as before the gesture, Undo does not know of the
-   * gesture. */
+  /** Ends the gesture. If the text is the same as before the gesture, the gesture leaves no entry
+   * in the undo history. */
   end(): void {
     if (this.over) return;
     if (this.isAlone && this.current.eq(this.base)) return this.cancel();
@@ -115,8 +116,8 @@ export class Gesture {
     if (this.current !== this.base) this.view.dispatch({ annotations: isolateHistory.of("after") });
   }
 
-  /** Reverts the gesture without a trace in Undo. If something else has changed the text, keeps the
-   * text and only ends the gesture. */
+  /** Reverts the gesture, and leaves no entry in the undo history. If something else has changed
+   * the text, only ends the gesture. */
   cancel(): void {
     if (this.over) return;
     if (!this.isAlone) return this.end();

@@ -18,8 +18,8 @@ const OF_SCENE = "as the scene";
 /** Size of the chart and of the margins around its plot, in units of its SVG. The margins contain
  * the labels; smaller ones would cut them off. */
 const CHART = { width: 340, height: 160, left: 50, right: 104, top: 8, bottom: 30 };
-/** Error in linear light (from 0 to 1) below which the mean of the samples is called right. Smaller
- * errors are not shown in the chart. The value is far below a step of 8 bits. */
+/** Error in linear light (from 0 to 1) below which the mean of the samples is called right. The
+ * scale of the chart ignores smaller errors. The value is far below a step of 8 bits. */
 const LEAST_ERROR = 1e-5;
 /** Maximum number of colours in the table, one row each. If there are more, the last row is their
  * sum. */
@@ -62,9 +62,10 @@ class PixelGlass {
     byId("glass-more").addEventListener("click", () => this.take((n, now) => n > now, 0));
   }
 
-  /** Puts the pixel under the pointer, or else the middle one, under the glass. If it is there
-   * already, or if the pointer has not moved since, hides the glass. When the glass appears, the
-   * picture may shrink, so that the pointer is over another pixel. */
+  /** Shows the pixel under the pointer; without a pointer, the middle pixel. If this pixel is shown
+   * already, or if the pointer has not moved since the last call, hides the glass. The position of
+   * the pointer is compared, too, because the picture may shrink when the glass appears, so that
+   * the pointer is then over another pixel. */
   private pin(): void {
     const { size } = picture;
     const isStill = place !== null && String(place) === String(this.place);
@@ -86,9 +87,9 @@ class PixelGlass {
     this.changed();
   }
 
-  /** Chooses a number of samples from the list: of the numbers for which `isMeant` is true, the
-   * first (`which` is 0) or the last (−1). `isMeant` compares a number with the present one,
-   * `now`. */
+  /** Chooses a number of samples from the list. `isMeant` says whether a number may be chosen; its
+   * second argument is the present number. Of these numbers, chooses the first (`which` is 0) or
+   * the last (`which` is −1). */
   private take(isMeant: (count: number, now: number) => boolean, which: number): void {
     if (this.pixel === null) return;
     const now = this.count.selectedIndex === 0 ? this.total : Number(this.count.value);

@@ -26,7 +26,7 @@ picture.stage.addEventListener("pointerleave", () => {
 /** Returns the point of the picture under the pointer; null if the pointer is elsewhere. */
 export function pointedAt(): Point | null { return place && picture.toPicture(place); }
 
-/** Finds again what is under the pointer, because the picture may have changed. */
+/** Requests the object under the pointer again, because the picture may have changed. */
 export function hoverAgain(): void { if (place !== null) void hover(picture.toPicture(place)); }
 
 const hover = newestOf(async (at: Point | null) => {

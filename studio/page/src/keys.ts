@@ -12,8 +12,8 @@ import { tools, type Tool } from "./tools";
 
 /** Step of an arrow key, in pixels of the picture; with Control, a tenth for fine movements. */
 const KEY_STEP = 10;
-/** Pause between key presses or turns of the wheel, in ms, after which the drag that they make
- * ends. A held key repeats faster, so all its repetitions make one drag. */
+/** Time from the last release of an arrow key or turn of the wheel to the end of the drag, in ms.
+ * Key presses and turns with shorter pauses belong to one drag. */
 const KEY_PAUSE = 500;
 
 export const ARROWS: Record<string, Point> =
@@ -22,7 +22,7 @@ export const ARROWS: Record<string, Point> =
 /** Elements in which keys do not control the picture, because they need all keys, e.g. to type
  * text. */
 const TEXT = "input:not([type=radio],[type=checkbox],[type=range]), [contenteditable=true]";
-const SAVE = ["Control+s", "Control+Shift+s"]; // work in `TEXT`, too
+const SAVE = ["Control+s", "Control+Shift+s"]; // keys that also work in elements of `TEXT`
 /** Elements that use arrow keys, Space or Escape themselves, so these keys do not control the
  * picture there. */
 const CONTROL = "input, select, button:not(.handle), summary, #divider, [open], [role=group]";
@@ -33,9 +33,9 @@ function nameOf({ key, ctrlKey, metaKey, shiftKey }: KeyboardEvent): string {
   return `Control+${shiftKey ? "Shift+" : ""}${key.toLowerCase()}`;
 }
 
-/** Returns the element that a key operates; undefined if the key has no function. If the key
- * selects the axis or plane to which drags are restricted already, returns the element `free`
- * instead, which removes the restriction. */
+/** Returns the element that a key operates; undefined if the key has no function. If drags are
+ * already restricted to the axis or plane that the key selects, returns the element `free` instead,
+ * which removes the restriction. */
 function controlOf(key: string): HTMLElement | undefined {
   const controls = [...document.querySelectorAll<HTMLElement>("[data-key]")];
   const found = controls.find(it => it.dataset["key"]?.split(" ").includes(key));
@@ -121,7 +121,7 @@ function up(event: KeyboardEvent): void {
   if (event.key in ARROWS) rest();
 }
 
-/** Ends the drag after a pause, so that repeated keys belong to one drag. */
+/** Ends the drag after `KEY_PAUSE`, so that key presses with shorter pauses belong to one drag. */
 function rest(): void {
   clearTimeout(pause);
   pause = setTimeout(endKeys, KEY_PAUSE);

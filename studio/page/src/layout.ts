@@ -16,7 +16,7 @@ const MOST = 80;
 const divider = byId("divider");
 const panes = byId("panes");
 const isNarrow = matchMedia("(max-width: 760px), (max-aspect-ratio: 1)");
-// Side by side and one above the other, text and picture have shares of their own.
+// The text's share of the page is stored separately for text beside the picture and text below it.
 const kept = () => isNarrow.matches ? { key: "text-below", usual: 30 }
   : { key: "text-share", usual: 42 };
 const share = (percent: number) => {
@@ -74,7 +74,7 @@ document.addEventListener("pointerdown", ({ target }) => closeMenus(target));
 for (const menu of menus) {
   menu.addEventListener("keydown", event => {
     if (event.key !== "Escape" || !menu.open) return;
-    event.preventDefault(); // this Escape does nothing else
+    event.preventDefault(); // keys.ts ignores this Escape
     closeMenus();
     menu.querySelector("summary")?.focus();
   });
@@ -83,8 +83,8 @@ for (const menu of menus) {
   });
 }
 
-// The theme is that of the panel, or follows the system until the user chooses one. Its colours are
-// defined in page.css.
+// In a panel, the theme is that of VS Code. Otherwise, it follows the system until the user chooses
+// a theme. The colours are defined in page.css.
 const systemIsDark = matchMedia("(prefers-color-scheme: dark)");
 const editorTheme = new Compartment();
 const ofPanel = () =>

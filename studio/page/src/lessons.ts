@@ -1,6 +1,6 @@
-// Lessons in the slot: a list, and the steps of the lesson that is open. A lesson's conditions are
-// judged by the engine after each change of the scene. The page's address names the open lesson, so
-// a reload opens it again.
+// Lessons, below the text: a list of them, or the steps of the open one. After each change of the
+// scene, the engine judges whether the lesson's conditions hold. The page's address names the open
+// lesson, so a reload opens it again.
 
 import { marked, type Token, type Tokens } from "marked";
 import { inAddress } from "./address";
@@ -22,7 +22,8 @@ const KEY = "lesson";
 /** A lesson, with its title and the Markdown of its steps. */
 interface Lesson extends LessonText { title: string; steps: Token[][] }
 
-/** Lesson 0 is that of the host, if it has one. The others are those of the page. */
+/** Item 0 is the lesson of the host, or null if the host has none. The others are the page's
+ * lessons. */
 const lessons: (Lesson | null)[] = [null, ...LESSONS.map(read)];
 
 const section = byId("lesson");
@@ -33,14 +34,14 @@ const [back, on] = [byId<HTMLButtonElement>("lesson-back"), byId<HTMLButtonEleme
 
 let current: Lesson | null = null;
 let step = 0;
-/** Whether the host's lesson is about the user's own scene, and not about that of the lesson. */
+/** Whether the host's lesson is about the user's own scene instead of the lesson's scene. */
 let isAboutOwn = false;
 /** Whether the section shows the list of all lessons. */
 let isList = true;
 /** The engine's last answer about the current lesson; null if there is none yet. */
 let judged: Judged | null = null;
 const solved = new Set(remembered("solved")?.split("\n"));
-/** What the user has made of the lessons' scenes since the page was loaded. */
+/** Text that each lesson's scene had when the user last left the lesson. */
 const texts = new Map<Lesson, string>();
 
 /** Splits a lesson's Markdown into its title and its steps, which begin with headings `##`. */
@@ -62,9 +63,9 @@ function plain(tokens: Token[]): string {
   return Object.assign(create("div"), { innerHTML: html }).textContent;
 }
 
-/** Opens the lesson that the page's address names or, if there is none, the host's lesson `own`.
- * The scene of the host's lesson replaces the page's scene only if that is a new one (`isNew`).
- * Otherwise, the lesson is shown beside the page's scene. */
+/** Opens the lesson that the page's address names. If it names none, opens the host's lesson `own`.
+ * The scene of the host's lesson replaces the page's scene only if the page's scene is new
+ * (`isNew`). Otherwise, the lesson is about the page's scene. */
 export function startLessons(own: LessonText | null | undefined, isNew: boolean): void {
   if (own != null) lessons[0] = read(own);
   isAboutOwn = !isNew;
@@ -72,7 +73,7 @@ export function startLessons(own: LessonText | null | undefined, isNew: boolean)
   else if (lessons[0]) open(lessons[0]);
 }
 
-/** Opens the lesson that the page's address names, or closes the open one if it names none. */
+/** Opens the lesson that the page's address names. If it names none, closes the open lesson. */
 export function followAddress(): void {
   const named = inAddress(KEY);
   if (named === null) return close();
@@ -82,7 +83,7 @@ export function followAddress(): void {
 }
 
 /** Opens a lesson. Its scene replaces the page's scene, unless the lesson is about the user's own
- * scene or the one in the page's address. */
+ * scene, or the page's address contains a scene. */
 function open(lesson: Lesson): void {
   if (lesson !== current) {
     keepText();
@@ -126,8 +127,8 @@ files.closeLesson = () => {
 
 let timer: ReturnType<typeof setTimeout>;
 
-/** Requests the judgement of the lesson's conditions, after a pause in changes of the scene or the
- * lesson, and not during a drag. */
+/** Has the lesson's conditions judged after a pause in changes of the scene or the lesson. During a
+ * drag, they are not judged. */
 export function lessonChanged(): void {
   clearTimeout(timer);
   if (current !== null) timer = setTimeout(judge, REST, current);
@@ -174,13 +175,14 @@ function show(): void {
   showConditions();
 }
 
-/** Returns an element for each token of a step. That of a check is empty. */
+/** Returns an element for each token of a step. The element of a block `check` is empty until
+ * `fill` adds the conditions. */
 const elements = (tokens: Token[]): HTMLElement[] => tokens.map(token => isCheck(token)
   ? create("ul", "conditions")
   : Object.assign(create("div"), { innerHTML: sanitized(marked.parser([token])) }));
 
-/** Returns the open lesson as a whole, with all of its steps, for paper. Returns nothing if no
- * lesson is open. */
+/** Returns the open lesson with all of its steps, for paper. Returns nothing if no lesson is open.
+ */
 export function lessonOnPaper(): HTMLElement[] {
   if (section.hidden || isList || current === null) return [];
   const tokens = current.steps.flat();
@@ -189,15 +191,16 @@ export function lessonOnPaper(): HTMLElement[] {
   return [create("h2", "", title.textContent), ...all];
 }
 
-/** Returns whether the engine reads conditions in the block. It does so only if the fence is at the
- * start of a line (src/lesson/parser.rs). */
+/** Returns whether the token is a block `check`, in which the engine reads conditions. Like the
+ * engine (src/lesson/parser.rs), accepts a fence only at the start of a line. */
 const isCheck = ({ type, raw }: Token): boolean =>
   type === "code" && /^(```+|~~~+)[ \t]*check[ \t]*(\n|$)/.test(raw);
 
-/** Returns the lines of a block `check` that are conditions, as `bare` leaves them. */
+/** Returns the conditions in a block `check`, each in the form that `bare` returns. */
 const conditionsIn = (token: Token): string[] => (token as Tokens.Code).text.split("\n")
   .map(line => line.trim()).filter(line => line !== "" && !line.startsWith("//")).map(bare);
-/** Returns a condition and its words without white space and the sign between them. */
+/** Removes white space and `//` from a line with a condition and its description in words. Then
+ * the page's and the engine's forms of the line are equal. */
 const bare = (line: string) => line.replace(/\s|\/\//g, "");
 
 function list(): HTMLElement {
@@ -221,8 +224,8 @@ function choose(i: number): void {
   title.focus();
 }
 
-/** Shows for each condition of the current step whether it holds, and how many of them hold. If all
- * conditions of the lesson hold, says that it is solved. */
+/** Shows for each condition of the current step whether it holds, and how many conditions hold. If
+ * all conditions of the lesson hold, says that the lesson is solved. */
 function showConditions(): void {
   if (isList || current === null) return;
   const all = fill(current.steps[step] ?? [], [...body.children]);
@@ -230,8 +233,8 @@ function showConditions(): void {
     : all.length > 0 ? `${all.filter(it => it.holds).length} of ${all.length} hold` : "");
 }
 
-/** Shows the conditions of each check among the tokens of a step in its element, and whether they
- * hold. Returns all conditions. */
+/** Fills the element of each block `check` in `tokens` with its conditions and whether they hold.
+ * `elements` has one element per token. Returns all conditions. */
 function fill(tokens: Token[], elements: Element[]): Condition[] {
   return tokens.flatMap((token, i) => {
     if (!isCheck(token)) return [];

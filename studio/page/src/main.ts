@@ -139,10 +139,11 @@ editor.onNotification = (method, params) => {
   if (method === "panel/text" || method === "panel/cursor") follow(params);
 };
 
-/** Whether the page does what the editor around its panel has told it. */
+/** Whether the page is applying a message from VS Code's editor. The cursor movements that this
+ * causes are not reported back to VS Code. */
 let isFollowing = false;
 
-/** Takes over the text, or the cursor, of the editor around the panel. */
+/** Copies the text or the cursor of VS Code's editor into the page. */
 function follow({ text, position }: { text?: string; position?: Position }): void {
   isFollowing = true;
   if (position) editor.view.dispatch({ selection: { anchor: editor.offset(position) } });
@@ -187,13 +188,13 @@ addEventListener("hashchange", async () => {
 });
 byId("undo").addEventListener("click", () => undo(editor.view));
 byId("redo").addEventListener("click", () => redo(editor.view));
-// The editor creates elements only for visible lines, so printing needs a copy of the text.
 const place = () => [picture, outside.picture].forEach(it => it.fit());
 addEventListener("beforeprint", () => {
-  // On paper, the pictures have other sizes. They are placed before paper is laid out.
+  // On paper, the pictures have other sizes, so they are fitted again before the page is printed.
   document.body.classList.add("paper");
   byId("dock").classList.toggle("without-room", byId("dock").clientWidth === 0);
   place();
+  // The editor creates elements only for visible lines, so printing needs a copy of the text.
   setText(byId("print-text"), [`${files.at.name}, ${new Date().toLocaleString()}`,
     ...firstError(), "", editor.text].join("\n"));
   byId("print-lesson").replaceChildren(...lessonOnPaper());

@@ -17,7 +17,8 @@ export interface Literal { from: number; to: number; end: number; value: number 
  * single steps would be hard to hit; with more, a drag would not reach far. */
 const DRAG_PIXELS = 4;
 
-/** Matches text at whose end a `-` is the sign of a number rather than a subtraction. */
+/** Matches the text before a number if it ends with the number's sign `-`. It does not match if the
+ * `-` is a subtraction. */
 const SIGN = /(?:^|[-+*/=(,{]|\b(?:y|roll|spin))\s*-$/;
 
 export function literalAt(at: number): Literal | null {

@@ -1,5 +1,5 @@
-// The view from outside: the same scene by a second camera, with the scene's own camera drawn in
-// it. A drag there turns the view, or moves an object or a handle of the scene's camera.
+// The view from outside: a picture of the scene by a second camera, in which the scene's own camera
+// is drawn. A drag in it turns the view, or moves an object or a handle of the scene's camera.
 
 import { inAddress } from "./address";
 import { connection } from "./connection";
@@ -23,13 +23,14 @@ import { setText } from "./visible";
 /** Samples per pixel of this view when nothing moves. With fewer samples, edges would be jagged;
  * more samples would take longer. */
 const SAMPLES = 16;
-/** Maximum number of device pixels for a pixel of the page. More would not be seen. */
+/** Maximum resolution of the view's picture, in device pixels per CSS pixel. A higher resolution
+ * would hardly be visible. */
 const SHARPEST = 2;
-/** Greatest angle between the level and the direction of the view, in radians: a little less than a
- * right angle, at which the picture's top would not be defined. */
+/** Maximum angle between the direction of the view and the horizontal, in radians. It is a little
+ * less than a right angle, at which the picture's up direction would be undefined. */
 const STEEPEST = Math.PI / 2 - 1e-3;
-/** Maximum time, in ms, that a coarse picture may take during a drag. After a slower one, this view
- * gets no new picture until the drag ends, because the main picture would have to wait for it. */
+/** Maximum time, in ms, that a coarse picture of this view may take during a drag. After a slower
+ * picture, the view gets no new one until the drag ends, so that the main picture need not wait. */
 const LATE = 40;
 /** Angle by which an arrow key turns the view. It is given as a movement of the pointer, in heights
  * of the picture; a whole height turns the view by 180°. */
@@ -42,20 +43,21 @@ const plus = (a: Vector, b: Vector, by = 1): Vector =>
 
 /** Order in which the lines of the camera are drawn; the last one is on top. */
 const LINES: CameraLine[] = ["frustum", "far", "near", "axis", "rays", "window", "up", "ray"];
-/** Class of the view when it is drawn for an SVG, as it is printed. */
+/** CSS class of the view while it is drawn for an SVG. It gives the SVG the style of paper. */
 const INK = "ink";
 /** Properties of lines and labels that an SVG of the view keeps. */
 const STYLE = ["display", "fill", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin",
   "paint-order", "font-family", "font-size"];
-/** Handles whose names are always shown, on the given side; the last three only in ink. */
+/** Handles of the camera whose names are drawn, and the side on which each name stands. The last
+ * three names are visible only on paper and in an SVG. */
 const NAMED: Record<string, "above" | "below"> = { eye: "above", lookat: "below",
   direction: "below", d: "below", view_height: "above", fov: "above", hfov: "above",
   up: "above", near: "below", far: "below" };
 
 /** Distances of labels from their handles: above and below. */
 const SIDES = ["-1.1em", "1.9em"];
-/** Width of an SVG of the view, in its own units: that of a printed page in CSS pixels, so that
- * labels are as large as on paper. */
+/** Width of an SVG of the view, in units of the SVG. It equals the width of a printed page, 180 mm,
+ * in CSS pixels, so that labels are as large as on paper. */
 const SVG_WIDTH = 680;
 
 /** Returns the handles of the scene's camera. */
@@ -103,7 +105,7 @@ class Outside {
     picture.onView = () => {
       this.draw();
       if (this.view !== null && String(this.size) === String(this.view.size)) return;
-      // A view that the user has not chosen is chosen anew, so that all of it is seen.
+      // If the user has not chosen the view, the server chooses it again, for the new size.
       if (!this.isChosen) this.view = null;
       this.changed();
     };
@@ -202,9 +204,9 @@ class Outside {
       // A view that was chosen for another size is not used; another request follows.
       const fits = asked !== null || String(size) === String(this.size);
       if (this.view === asked && fits) this.view = answer.view ?? null;
-      // If a change of the text has moved the camera out of the picture, the view is chosen again.
-      // If the user has turned it, its direction is kept. A drag would be disturbed by that, so it
-      // must have ended.
+      // If a change of the text has moved the scene's camera out of the picture, the server chooses
+      // the view again, but not during a drag, which a new view would disturb. If the user has
+      // chosen the view, its direction is kept.
       if (this.seesCamera) this.isInView = true;
       else if (this.isInView && this.view !== null && frames.dragging === null) {
         this.isInView = false;
@@ -244,7 +246,7 @@ class Outside {
     if (camera === undefined) return;
     const draw = (name: string, lines: readonly Polyline[]) =>
       drawLines(svg, name, lines.map(line => line.map(place)));
-    // What is dragged is highlighted, in whichever picture it is dragged.
+    // A dragged object or camera is highlighted here even if it is dragged in the main picture.
     const { dragging } = frames;
     const held = dragging instanceof Drag ? dragging.held : null;
     svg.toggleAttribute("data-camera-held", held !== null && held.object === null);
@@ -276,8 +278,8 @@ class Outside {
     }
   }
 
-  /** Returns the view in ink, with all outlines, as the text of an SVG. Its size does not depend on
-   * that of the page. Fails if there is no picture of the text. */
+  /** Returns the view as the text of an SVG, in the style of paper, with the outlines of all
+   * objects. Its width is `SVG_WIDTH`. Fails if there is no picture of the text. */
   async asSvg(): Promise<string> {
     const { picture: { canvas, stage }, size: [across, down] } = this;
     const [width, height] = [SVG_WIDTH, Math.round(SVG_WIDTH * down / across)];
@@ -295,7 +297,8 @@ class Outside {
       const style = getComputedStyle(shape);
       for (const name of STYLE) shape.setAttribute(name, style.getPropertyValue(name));
     }
-    // A white sheet makes the picture pale. Some programs ignore the opacity of pictures.
+    // A translucent white rectangle makes the picture pale, since some programs ignore the opacity
+    // of images.
     const pale = 1 - Number(getComputedStyle(canvas).opacity);
     whole.prepend(createSvg("image", { width, height, href: `data:image/png;base64,${frame.png}` }),
       createSvg("rect", { width, height, fill: "#ffffff", "fill-opacity": pale }));
@@ -305,7 +308,7 @@ class Outside {
     return new XMLSerializer().serializeToString(whole);
   }
 
-  /** Handles of the scene's camera, and the first one of the selected object. */
+  /** Handles of the scene's camera, and the first handle of the selected object. */
   private get owned(): OwnedHandle[] {
     const { data } = this;
     if (!data?.camera || !this.isTrue) return [];
@@ -338,7 +341,7 @@ class Outside {
       const found = await fingers.isAlone
         ? await grab(at, this.view, it => it !== null && it.kind !== "checkerboard") : null;
       isObject = found !== null;
-      // Turning the view does not change the text, so it is no drag.
+      // The pointer turns the view. The drag, which would change the text, is cancelled.
       if (!isObject) cancel();
       return found;
     };
@@ -363,7 +366,7 @@ class Outside {
     const arrow = ARROWS[event.key];
     const held = this.held(event.target as Element);
     tools.held = event;
-    // Control with + − 0 is the browser's own zoom.
+    // Control with +, − or 0 is a command of the browser, which zooms the page.
     if (event.altKey || event.metaKey || (event.ctrlKey && arrow === undefined)) return;
     if (arrow !== undefined && held !== null) {
       dragByKey(event, arrow, () => new Drag(held.at, () => held, this));

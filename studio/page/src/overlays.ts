@@ -15,8 +15,8 @@ const boxes = [...document.querySelectorAll<HTMLInputElement>("#layers [name]")]
 const EDGE = 14;
 
 class OverlayLayer {
-  /** Overlays of the newest text. While the newest text has errors, the overlays are those of the
-   * last text without errors. */
+  /** Overlays that the server has sent last; null if it has sent none yet. For a text with errors,
+   * it sends none. */
   data: Overlays | null = null;
   /** Whether `data` belongs to the current text. */
   isTrue = true;
@@ -50,7 +50,8 @@ class OverlayLayer {
     this.onNeed();
   }
 
-  /** Hides all layers until the user shows one again. A reload shows those that are remembered. */
+  /** Hides all layers. A reload shows the remembered layers again. If the page's address names
+   * layers, does nothing. */
   hideLayers(): void {
     if (inAddress("show") !== null) return;
     for (const box of boxes) box.checked = false;

@@ -1,7 +1,7 @@
-// The panel of VS Code that contains the page, if one does. The editor there has the text; the
+// The panel of VS Code that contains the page, if there is one. VS Code's editor has the text; the
 // page's own editor is hidden and has a copy of it. docs/protocol.md describes the messages.
 
-/** What VS Code gives to the page of a panel. The state survives a reload of the window. */
+/** Functions of VS Code for the page in a panel. The state survives a reload of the window. */
 interface Panel {
   postMessage(message: string): void;
   getState(): Record<string, string> | undefined;

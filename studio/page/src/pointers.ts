@@ -13,10 +13,11 @@ import { tools, type Tool } from "./tools";
 /** Tools that the middle (1) and the right (2) mouse button use, whichever tool is chosen. */
 const BUTTONS: Record<number, Tool> = { 1: "pan", 2: "orbit" };
 
-/** Zoom before two fingers changed it. */
+/** Zoom of the picture when the second of two fingers was pressed. */
 let before = 1;
-// Fingers shrink the picture at most until it is visible as a whole. The zoom follows from their
-// total movement, so that what exceeds the limit is not forgotten between two events.
+// Fingers can shrink the picture only until all of it is visible. The new zoom is computed from
+// `before` and the total factor, not from the last zoom. Thus fingers that have gone beyond the
+// limit must come back to it before the picture grows again.
 const fingers = new Fingers(picture, (factor, about, total) => {
   if (total === factor) before = picture.zoom;
   const zoom = Math.max(before * total, Math.min(before, picture.fitting));

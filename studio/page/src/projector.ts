@@ -1,5 +1,5 @@
-// What a class sees. The page itself can be large, without header and footer. A second window shows
-// only the picture; the page's tab sends it the pictures.
+// Two ways to show the page to a class with a projector. The page itself can be large, without
+// header and footer. Or a second window shows only the picture, which the page's tab sends to it.
 
 import { inAddress } from "./address";
 import { byId, remember, remembered } from "./dom";
@@ -11,8 +11,9 @@ const of = inAddress(KEY);
 export const isProjector = of !== null;
 
 /** Kinds of messages between tabs and projector windows. A window says that it is `ready` for
- * pictures, or `gone`. A tab that was just loaded asks who is `there`: windows answer `ready`. A
- * tab that uses the channel already answers `taken`, because the loaded tab is a copy of it. */
+ * pictures, or `gone`. A tab that was just loaded sends `there`, and windows answer `ready`. If
+ * another tab already uses the channel, it answers `taken`: the loaded tab is a copy of that tab,
+ * and needs another channel. */
 type Kind = "ready" | "gone" | "there" | "taken" | "picture";
 interface Message { kind: Kind; from: string; shown?: Shown }
 
@@ -21,8 +22,8 @@ const own = unique();
 /** Projector windows that want pictures from this tab. */
 const windows = new Set<string>();
 
-/** Name of the broadcast channel. A reloaded tab uses the same one as before, so that open
- * projector windows continue to get pictures. */
+/** Name of the broadcast channel. A tab keeps the name when it is reloaded, so that open projector
+ * windows continue to get pictures. */
 let name = of ?? remembered(KEY, "sessionStorage") ?? unique();
 let channel = join();
 
@@ -63,7 +64,7 @@ document.body.classList.toggle("projector", isProjector);
 addEventListener("pagehide", () => send("gone"));
 send(isProjector ? "ready" : "there");
 
-/** Whether the page is large, for which large.css cares. A reloaded tab stays so. */
+/** Checkbox that makes the page large, by the rules in large.css. Its state survives a reload. */
 export const large = byId<HTMLInputElement>("large");
 large.checked = remembered("large", "sessionStorage") === "true";
 large.addEventListener("change", () =>

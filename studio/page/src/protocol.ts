@@ -13,7 +13,7 @@ export interface Frame { version: number; width: number; size: [number, number];
 export interface SceneObject {
   index: number; kind: string; name: string | null; range: Range; selection: Range;
   label: string; // the name, or a description that is unique among unnamed objects
-  indices?: number[]; // indices of an object of a repeated block
+  indices?: number[]; // of an object of a repeated block: the values of the block's indices
 }
 
 export interface Handle { handle: string; at: Point | null; label: string }
@@ -90,15 +90,15 @@ export interface Glass {
 
 /** A lesson: its name, its Markdown, and the text of its scene. */
 export interface LessonText { name: string; text: string; start: string }
-/** Result of judging a lesson: whether the scene solves it, and each condition of each block
- * `check`. `found` is the value in the scene. `start` is the value in the lesson's own scene; null
- * unless the condition compares the two. */
+/** Result of judging a lesson: whether the scene solves it, and the conditions of each block
+ * `check`. */
 export interface Judged {
   holds: boolean;
   checks: Condition[][];
 }
 
-/** A condition of a lesson, and whether the scene meets it. */
+/** A condition of a lesson, and whether it holds for the scene. `found` is the value in the scene.
+ * `start` is the value in the lesson's own scene, or null unless the condition compares the two. */
 export interface Condition {
   condition: string;
   words: string;

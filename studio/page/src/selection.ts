@@ -14,7 +14,7 @@ import { say } from "./status";
 import { setText } from "./visible";
 
 /** Offsets from a handle's point, in screen pixels, the nearest first. A handle that would overlap
- * another one is moved by the first of them that avoids this. */
+ * another one is moved by the first offset that avoids the overlap. */
 const ASIDE: Point[] = [];
 for (let x = -60; x <= 60; x += 6) for (let y = -60; y <= 60; y += 6) ASIDE.push([x, y]);
 ASIDE.sort((a, b) => Math.hypot(...a) - Math.hypot(...b));
@@ -172,8 +172,8 @@ export function placeHandles(parent: HTMLElement, where: Picture,
   handles: readonly OwnedHandle[]): void {
   const shown = handles.filter(it => it.at !== null);
   const names = JSON.stringify(shown.map(it => [it.object, it.handle]));
-  // The elements are replaced only if the handles' names change, because the pointer may be
-  // dragging one of them.
+  // Replacing the buttons would end a drag of one of them, so they are replaced only if the names
+  // of the handles change.
   if (names !== parent.dataset["names"]) parent.replaceChildren(...shown.map(it => {
     const button = createButton("", "handle", () => {});
     button.dataset["handle"] = it.handle;
@@ -197,8 +197,7 @@ export function placeHandles(parent: HTMLElement, where: Picture,
 }
 
 /** Returns a position near a handle's point that is at least `least` screen pixels away from the
- * positions in `taken`. If the point is inside of the `stage`, the position is, too, if
- * possible. */
+ * positions in `taken`. If the point is inside of the `stage`, prefers positions inside. */
 function apart([x, y]: Point, taken: readonly Point[], least: number, stage: HTMLElement): Point {
   const isFree = ([x, y]: Point) =>
     taken.every(it => Math.max(Math.abs(x - it[0]), Math.abs(y - it[1])) >= least);

@@ -61,8 +61,8 @@ export function showProgress(share: number): void {
 
 const stem = () => files.at.name.replace(/\.scn$/, "");
 const rendering = byId("rendering");
-/** Downloads a file that the server makes of the scene, or of what `params` has instead. `part` is
- * a part of the file's name. */
+/** Downloads a file that the server renders. By default, `params` contains the text of the scene.
+ * `part` is added to the end of the file's name. */
 export async function render(kind: "png" | "exr", type: string, part = "",
   params: object = { text: editor.text }): Promise<void> {
   if (!rendering.hidden) return say("Another picture is being made.", "warning");

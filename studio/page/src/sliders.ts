@@ -13,8 +13,8 @@ import { setText } from "./visible";
 /** Time in which a playing slider moves from one end to the other, in ms. Chosen by eye: with a
  * shorter time, a change would be hard to follow. */
 const PLAY = 4000;
-/** Maximum number of pictures in a recording, which lasts `PLAY`. Each has all of its samples.
- * With more, the recording would be smoother, but take longer to make. */
+/** Maximum number of pictures in a recording, which lasts `PLAY`. Each picture is rendered with all
+ * samples. With more pictures, the recording would be smoother, but take longer to make. */
 const PICTURES = 60;
 
 type Row = ReturnType<typeof createRow>;
@@ -79,8 +79,9 @@ export function stop(): void {
   row.dial.end();
 }
 
-/** Downloads an animation of the scene with the numbers from one end of a slider to the other. The
- * text stays as it is. If `button` is pressed already, cancels that. */
+/** Downloads an animation of the scene in which the number runs from one end of its slider to the
+ * other. The text does not change. If the slider is being recorded already, cancels the recording.
+ */
 async function record(name: string, { limits, literal }: Dial, button: Element): Promise<void> {
   const found = literal();
   if (button.ariaPressed === "true") return byId("cancel").click();

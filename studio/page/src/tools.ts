@@ -44,8 +44,8 @@ class Tools {
     for (const input of radios("along")) input.checked = input.value === this.kept;
   }
 
-  /** Axis or plane to which drags are restricted while Shift is not held: the user's choice or, if
-   * there is none, the floor if the scene has a checkerboard. `""` means no restriction. */
+  /** Axis or plane to which drags are restricted while Shift is not held; `""` means no
+   * restriction. Until the user chooses, it is the floor in a scene with a checkerboard. */
   private get kept(): Along | "" { return this.chosen ?? (this.hasFloor ? "floor" : ""); }
 
   /** Axis or plane along which a drag moves an object, or a handle of the camera; undefined if the

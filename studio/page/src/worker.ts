@@ -1,6 +1,6 @@
 // The engine (the language server) in a web worker, which exchanges JSON texts with the page. The
-// engine reads new messages between slices of work. If the text has changed, it can thus drop the
-// work on the older text.
+// engine reads new messages between slices of work, so that it can drop the work on a text that has
+// been changed.
 
 import init, { Engine } from "pinhole-engine";
 

@@ -1,5 +1,5 @@
-// Tests of accessibility: the program axe checks the rules of WCAG AA in both themes, on a phone
-// and a desktop. The page is also used by keyboard alone.
+// Tests of accessibility: axe checks the rules of WCAG AA in both themes, on a phone and on a
+// desktop. Other tests check the keyboard, screen readers, printing, and small screens.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -22,7 +22,8 @@ for (const colorScheme of ["dark", "light"]) {
   for (const width of [380, 1280]) {
     test(`axe finds no violations: ${colorScheme}, ${width} px`, async t => {
       const page = await open(await launch(t), await host(t), { colorScheme, viewport: { width, height: 760 }, reducedMotion: "reduce" });
-      // The page's policy forbids foreign scripts, so axe is injected by the debugger.
+      // The page's content security policy forbids other scripts, so axe is run through the
+      // debugger.
       await page.evaluate(axe);
       await tab(page, "text");
       await page.waitForSelector(".hint");

@@ -1,6 +1,7 @@
 // Measures how fast the page shows pictures of figure 9.9 at 1280 × 720 pixels. For a key, and for
-// a step of a drag, prints the time to the coarse picture and to the finished one, as medians of
-// 100. Also prints the number of coarse pictures per second of a drag, and fails if memory grows.
+// a step of a drag, prints the times to the coarse and to the finished picture. Each time is the
+// median of 100. Also prints how many coarse pictures a drag shows per second. Fails if memory
+// grows.
 //
 // Call: `node test/bench.mjs [drags of 100 steps]`. With SITE, it measures the static page in that
 // folder; with OUTSIDE=hidden, the page without the view from outside.
@@ -27,7 +28,7 @@ const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? 
 try {
   const page = await open(browser, host);
   if (process.env.OUTSIDE === "hidden") await page.click("#outside-hide");
-  // A time begins at the browser's event, and ends when the picture is on the canvas.
+  // Times are measured from the browser's event until the picture is on the canvas.
   await page.evaluate(() => {
     window.begin = 0;
     window.frames = [];
@@ -58,7 +59,7 @@ try {
   await page.mouse.move(x + 20, y, { steps: 3 });
   console.log("drag:", await measure(i => page.mouse.move(x + 20 + (i % 2 === 0 ? 15 : 0), y)));
 
-  // A drag without pauses, which moves once per frame of the browser.
+  // Drags without pauses: the pointer moves once per frame of the browser.
   const moving = steps =>
     page.evaluate(
       async ([x, y, steps]) => {
@@ -67,7 +68,8 @@ try {
         const begin = performance.now();
         for (let i = 0; i < steps; i++) {
           await new Promise(requestAnimationFrame);
-          // Each move is two pixels, since nothing is drawn unless the numbers in the text change.
+          // A move must be large enough to change the numbers in the text; otherwise, no picture is
+          // drawn.
           const at = { clientX: x + 2 * Math.abs((i % 80) - 40) - 40, clientY: y, pointerId: 1, pointerType: "mouse", isPrimary: true, buttons: 1, bubbles: true };
           stage.dispatchEvent(new PointerEvent("pointermove", at));
         }
@@ -85,8 +87,7 @@ try {
   const memory = async () => {
     await session.send("HeapProfiler.collectGarbage");
     const heap = await page.evaluate(() => performance.memory.usedJSHeapSize);
-    // Pictures that the browser keeps are not in the heap, so the memory of the process is read,
-    // too.
+    // The heap does not contain the browser's pictures, so the memory of the process is read, too.
     const { processInfo } = await all.send("SystemInfo.getProcessInfo");
     const whole = Math.max(...processInfo.filter(({ type }) => type === "renderer").map(({ id }) => resident(id)));
     return { heap: round(heap / 2 ** 20), host: host.pid ? round(resident(host.pid)) : NaN, whole: round(whole) };
@@ -106,9 +107,9 @@ try {
   const after = await memory();
   for (const of of ["heap", "host"]) if (after[of] - before[of] > 2) throw new Error(`memory grows: ${JSON.stringify(before)} before, ${JSON.stringify(after)} after ${pictures} pictures`);
 
-  // Measures a scene of a thousand spheres: the time from a movement or a key to the coarse
-  // picture. A key is pressed every 120 ms; also prints for how many keys the picture arrives in
-  // this time.
+  // Measures the time from a movement or a key to the coarse picture in a scene of a thousand
+  // spheres. A key is pressed every 120 ms. Also prints for how many keys the picture arrives
+  // before the next key.
   if (process.env.SITE === undefined) {
     const spheres = Array.from({ length: 1000 }, (_, i) => `sphere { center (${(i % 40) - 20}, ${Math.floor(i / 40) - 12}, ${-(i % 7)})  radius 0.4 }\n`);
     writeFileSync(file, `image { width 1280  height 720 }\ncamera { eye (0, 2, 30)  lookat (0, 0, 0) }\nsphere Ball { center (0, 0, 3)  radius 2 }\n${spheres.join("")}`);

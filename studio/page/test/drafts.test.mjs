@@ -15,7 +15,7 @@ const choose = (page, name) => page.click(`#draft-choices >> text=${name}`);
 /** Waits until a draft is certainly stored. */
 const kept = page => page.waitForTimeout(900);
 
-/** Leaves a page as when the browser is closed. */
+/** Closes a page's browser context, as if the user closed the browser. */
 async function leave(page) {
   page.on("dialog", dialog => dialog.accept());
   await page.context().close();
@@ -68,7 +68,7 @@ test("restoring a draft keeps other offers and the text it replaces as drafts", 
   await kept(page);
   await started.stop("SIGKILL");
   await leave(page);
-  // The offer is left unanswered, and the text is changed.
+  // The offered draft is neither restored nor forgotten before the text is changed.
   const second = await serve(started.file);
   page = await open(browser, second);
   await offered(page);
@@ -89,7 +89,7 @@ test("restoring a draft keeps other offers and the text it replaces as drafts", 
   assert.equal((await offers(page)).length, 2);
   await andFinished(page, () => choose(page, "Restore"));
   assert.equal(await text(page), NEARER);
-  // Saving leaves the remaining offers as they are.
+  // After Save, the remaining drafts are still offered.
   await page.keyboard.press("Control+s");
   await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
   await page.reload();
@@ -163,7 +163,7 @@ for (const way of ["a reload of its tab, and its address there", "its address in
       await page.waitForTimeout(300);
       assert.ok(await page.isHidden("#draft-bar"));
     }
-    // The browser keeps no draft that the host has.
+    // The browser's copy is deleted when the host has stored the draft.
     await kept(next);
     const left = await next.evaluate(() => new Promise(resolve => {
       indexedDB.open("pinhole-drafts").onsuccess = ({ target: { result } }) => {

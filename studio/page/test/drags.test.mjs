@@ -1,5 +1,4 @@
-// Tests of drags by a real pointer. It is pressed, moved twelve times at the pace of a hand, and
-// released.
+// Tests of drags by a real pointer: a press, twelve moves at the pace of a hand, and a release.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -7,7 +6,7 @@ import { choose, FIGURE, finished, hand, handle, host, launch, onPage, open, res
 
 const BALL = [455, 320];
 
-/** The ball that the camera looks at. */
+/** A scene in which the ball's centre and the camera's `lookat` are the same definition. */
 const WATCHED = "let ball = (0, 1, 0)\nimage { width 640  height 360 }\ncamera { eye (0, 2, 8)  lookat ball }\nsampler { per_pixel 4 }\nsphere Ball { center ball }\n";
 
 const select = async (page, label) => {
@@ -127,14 +126,14 @@ test("Escape reverts a pointer's change of a slider, a number or the divider", a
   for (const [name, given] of Object.entries(ways)) {
     const { before, from, after } = { ...around, ...given };
     await before();
-    // The server tests which values at the ends of a slider are valid, so the ends may still
-    // change.
+    // The server may still shorten the range of the slider to valid values, which would move the
+    // thumb.
     await rested(page);
     await hand(page, await from(), [40, 0], { hold: true });
     await rested(page);
     assert.notEqual(await text(page), scene, `${name} turns nothing`);
     await page.keyboard.press("Escape");
-    // The pointer moves on before it is released.
+    // The pointer is moved once more before it is released, which must change nothing.
     await page.mouse.move(500, 300, { steps: 4 });
     await page.mouse.up();
     await after();
@@ -144,7 +143,7 @@ test("Escape reverts a pointer's change of a slider, a number or the divider", a
     await page.keyboard.press("Escape");
     assert.equal(await page.inputValue(".slider-row input"), "1", name);
   }
-  // The slider works again.
+  // After the cancelled drags, the slider can be moved again.
   await hand(page, await thumb(".slider-row input"), [60, 0]);
   await rested(page);
   assert.notEqual(await text(page), scene);
@@ -166,7 +165,7 @@ test("a drag's note stands at the pointer while it lasts, and the footer shows n
   assert.equal(await page.textContent("#pointed"), "");
   await page.mouse.up();
   await page.waitForSelector("#drag-note", { state: "hidden" });
-  // The pointer has not moved after the drag. Even so, the footer names the object under it.
+  // After the drag, the footer names the object under the pointer, although the pointer rests.
   await page.waitForFunction(() => /^Ball at /.test(document.querySelector("#pointed").textContent));
   await page.keyboard.press("Control+z");
   await page.waitForFunction(() => !/^Ball at /.test(document.querySelector("#pointed").textContent));
@@ -239,7 +238,7 @@ test("a drag faster than the server's answers still arrives", async t => {
   await rested(page);
   assert.notEqual(await text(page), FIGURE);
   await finished(page);
-  // A text that is typed after the drag is not changed by late answers.
+  // Late answers to the drag do not change a text that is typed after it.
   await type(page, WATCHED);
   await rested(page);
   assert.equal(await text(page), WATCHED);
@@ -271,9 +270,9 @@ test("at every window size selecting moves nothing, and objects follow the point
     assert.equal(await where(), before, `${width} × ${height}`);
     const [x, y] = await handle(page, "Ball: center");
     const begin = await onPage(page, middle);
-    // A drag ends at most a step of 8 pixels from the pointer.
+    // A drag moves in steps of 8 pixels, so the object ends near the pointer, not exactly at it.
     assert.ok(Math.hypot(x - begin[0] - dx, y - begin[1] - dy) < 12, `${width} × ${height}: ${x - begin[0]}, ${y - begin[1]}`);
-    // No draft remains that would be offered to the next page.
+    // Undo removes the draft, which would otherwise be offered to the next page.
     await page.keyboard.press("Control+z");
     await rested(page);
     await page.waitForTimeout(600);

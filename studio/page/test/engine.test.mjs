@@ -1,4 +1,5 @@
-// Tests of the WebAssembly engine without a page: its pictures equal the program's in each pixel.
+// Tests of the WebAssembly engine without a page: its pictures have the same pixels as those of
+// `pinhole render`.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -41,7 +42,7 @@ function opened(text) {
   return engine;
 }
 
-/** Returns the program's picture of a text. */
+/** Returns the picture file that `pinhole` renders from a text. */
 function rendered(text, ending = "png", ...args) {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-engine-"));
   try {
@@ -54,7 +55,7 @@ function rendered(text, ending = "png", ...args) {
   }
 }
 
-/** Returns the part of a PNG with the pixels. The part before it contains the scene's text, which
+/** Returns the bytes of a PNG from the pixels on. The bytes before contain the scene's text, which
  * is not compared. */
 const pixels = png => png.subarray(png.indexOf("IDAT"));
 

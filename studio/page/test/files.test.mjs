@@ -111,7 +111,7 @@ test("an outside change of half a surrogate pair replaces the whole character", 
   const page = await open(await launch(t), started);
   await andFinished(page, () => started.write(`// 😁\n${FIGURE}`));
   assert.equal(await text(page), `// 😁\n${FIGURE}`);
-  // Half of a surrogate pair, as some programs paste it, is replaced.
+  // An unpaired surrogate, which some programs put into pasted text, is replaced.
   await page.click(".cm-content");
   await page.keyboard.press("Control+Home");
   await andFinished(page, () =>
@@ -157,7 +157,7 @@ test("a late answer to Save belongs to the scene that was saved", async t => {
   assert.equal(await page.textContent("#file-state"), "not saved");
   await page.keyboard.press("Control+s");
   await page.waitForSelector("#name-dialog[open]");
-  // The name is that of the host's scene, which already exists.
+  // The name of the host's file is refused, because this file exists.
   await page.fill("#name-field", "scene.scn");
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => /is there already/.test(document.querySelector("#name-problem").textContent));
@@ -225,7 +225,7 @@ test("Studio without a file and New start with the same valid text", async t => 
   await andFinished(page, () => menu(page, "File", "#new"));
   assert.equal(await text(page), first);
   assert.equal(await page.textContent("#said"), "");
-  // A board that is added after the objects gets the height at which they stand on it.
+  // A checkerboard that is added after objects gets the height of their lowest points.
   for (const kind of ["sphere", "box", "checkerboard"]) {
     await andFinished(page, () => menu(page, "+ Add", `[data-kind=${kind}]`));
     await rested(page);
@@ -395,7 +395,7 @@ test("an outside save during a drag is shown when the drag ends", async t => {
     started.write(before.replace("8)", "6)"));
     await page.waitForTimeout(1000);
     assert.ok(await page.isHidden("#conflict-dialog"));
-    // The drag is not interrupted by the outside save.
+    // The save by another program does not interrupt the drag.
     const [x, y] = await from();
     await page.mouse.move(x + 90, y, { steps: 6 });
     await rested(page);

@@ -78,7 +78,8 @@ test("a key changes the method, and another the number of samples", async t => {
   await page.waitForFunction(() => document.querySelectorAll("#glass-points circle").length === 64);
   for (let i = 0; i < 5; i++) await page.keyboard.press(",");
   await page.waitForFunction(() => document.querySelectorAll("#glass-points circle").length === 1);
-  // The chart has five dots: for each number of samples, the error with the scene's seed.
+  // For each of the five numbers of samples, a dot in the chart shows the error with the scene's
+  // seed.
   assert.equal(await page.locator("#glass-chart .own").count(), 5);
 });
 
@@ -102,7 +103,7 @@ test("layers of earlier versions open the glass instead", async t => {
     await page.reload();
     await page.waitForSelector("#glass-points circle");
     assert.equal(await page.textContent("#glass-pixel"), "160, 90");
-    // The old setting opens the glass only once, because it is then removed.
+    // The old setting opens the glass only once. It is removed then.
     await page.reload();
     await page.waitForSelector("#canvas[data-fineness=final]");
     assert.ok(await page.locator("#glass").isHidden());
@@ -117,7 +118,7 @@ test("the keys of the glass do nothing while it is closed, and a message about i
   await pin(page, EDGE);
   await page.waitForSelector("#glass-points circle");
   assert.equal(await page.textContent("#said"), "");
-  // Once it has been open, its lists are filled.
+  // Now the lists of the closed glass have entries. Even so, its keys do nothing.
   await page.keyboard.press("g");
   await page.waitForSelector("#glass", { state: "hidden" });
   for (const key of ["n", "n", ".", "."]) await page.keyboard.press(key);

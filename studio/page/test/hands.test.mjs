@@ -1,4 +1,4 @@
-// Tests of editing in the picture: objects and the camera are moved, and the text follows.
+// Tests of editing in the picture: moving objects and the camera changes the text.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -161,7 +161,7 @@ test("the camera orbits about its lookat point", async t => {
 
 test("objects and camera can be moved by keyboard alone", async t => {
   const page = await open(await launch(t), await host(t));
-  // The Tab key alone leads from the top of the page to the picture.
+  // The Tab key alone leads from the top of the page to the list of objects.
   for (let i = 0; i < 60; i++) {
     await page.keyboard.press("Tab");
     if (await page.evaluate(() => document.activeElement.id === "objects")) break;
@@ -169,7 +169,7 @@ test("objects and camera can be moved by keyboard alone", async t => {
   assert.equal(await page.evaluate(() => document.activeElement.id), "objects");
   await page.keyboard.press("ArrowDown");
   await page.waitForSelector('.handle[aria-label="Ball: center"]');
-  // In the order of the Tab key, the picture comes before its tools.
+  // Shift-Tab leads from the tools back to the handles in the picture.
   for (let i = 0; i < 20; i++) {
     await page.keyboard.press("Shift+Tab");
     if (await page.evaluate(() => document.activeElement.ariaLabel === "Ball: center")) break;
@@ -209,7 +209,7 @@ test("repeated taps of a key are one drag, and every tap counts", async t => {
   await page.waitForTimeout(800);
   await finished(page);
   const [now, level] = await place();
-  // Each number is rounded to half a unit of its last digit, which limits the precision.
+  // The numbers in the text are rounded, so the object is not exactly at the expected point.
   assert.ok(Math.abs(now - x - 60) <= 8 && Math.abs(level - y) <= 8, `${now - x}`);
   await andFinished(page, () => page.keyboard.press("Control+z"));
   assert.equal(await text(page), FIGURE);
@@ -329,7 +329,7 @@ test("a selected board is not outlined across objects in front of it", async t =
   await page.mouse.move(...(await onPage(page, [100, -30])));
   await page.waitForTimeout(300);
   assert.equal(await page.locator("#lines .line.selected").count(), 0);
-  // The ball is made a comment; without it, the outline of the square is visible.
+  // The ball's block becomes a comment. Without the ball, the outline of the square is visible.
   await page.locator(".cm-line").last().click();
   await page.keyboard.type("// ", { delay: 30 });
   await page.keyboard.press("ArrowUp");
@@ -340,7 +340,8 @@ test("a selected board is not outlined across objects in front of it", async t =
 });
 
 test("the selection stays when another program inserts text before it", async t => {
-  // Another program's change is applied as a minimal difference, which may begin within a block.
+  // The page applies another program's change as a minimal difference, which may begin in the
+  // middle of a block.
   const blocks = ["sphere for i < 3 { center (2*i - 2, 1, 0)  radius 0.6 }", "box { min (-3, 0, -1)  max (-2.4, 2, 0) }"];
   const board = "checkerboard { y 0 }";
   const camera = "camera { eye (0, 3, 9)  lookat (0, 1, 0) }";
@@ -359,7 +360,7 @@ test("the selection stays when another program inserts text before it", async t 
     await rested(page);
     const line = Number(/\d+(?=\)$)/.exec(selected)[0]) + 2;
     assert.deepEqual(await shown(), [selected.replace(/\d+\)$/, `${line})`), label]);
-    // A removal of the text is a minimal difference, too.
+    // When the inserted text is removed again, the selection stays, too.
     started.write(lines.join("\n"));
     await page.waitForFunction(() => document.querySelector("#objects").options.length === 6);
     await rested(page);
@@ -367,7 +368,7 @@ test("the selection stays when another program inserts text before it", async t 
     started.write([...lines.slice(0, at), added, added.replace("3", "2.5"), ...lines.slice(at)].join("\n"));
     await page.waitForFunction(() => document.querySelector("#objects").options.length === 8);
     await rested(page);
-    // The handle that is dragged belongs to the selected object.
+    // A drag of the handle changes only the block of the selected object.
     await hand(page, await handle(page, label), [40, 0]);
     await rested(page);
     const now = (await text(page)).split("\n");
@@ -382,7 +383,7 @@ test("two fingers shift the picture as far as they move, shrink it at most to it
   const touch = (type, ...points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
   const place = () => page.evaluate(() => document.querySelector("canvas").getBoundingClientRect().toJSON());
   const line = () => page.textContent(".cm-activeLine");
-  /** Moves two fingers, of which the first is pressed a moment before the second. */
+  /** Moves two fingers. The second one is pressed a moment after the first. */
   const fingers = async (from, to) => {
     const at = part => from.map((it, i) => it.map((_, axis) => it[axis] + (to[i][axis] - it[axis]) * part));
     await touch("touchStart", from[0]);
@@ -398,14 +399,14 @@ test("two fingers shift the picture as far as they move, shrink it at most to it
   await fingers([[x, y], [x + 60, y]], [[x - 30, y], [x + 110, y]]);
   const near = await place();
   assert.ok(near.width > 1.8 * whole, `${near.width}`);
-  // The middle of the fingers moves by 60 and 50, and their distance stays.
+  // Both fingers move by 60 and 50 pixels, so the picture is shifted without a zoom.
   await fingers([[860, 170], [960, 170]], [[920, 220], [1020, 220]]);
   const shifted = await place();
   assert.ok(Math.abs(shifted.left - near.left - 60) < 6 && Math.abs(shifted.top - near.top - 50) < 6, JSON.stringify([near, shifted]));
   assert.ok(Math.abs(shifted.width - near.width) < 6);
   for (let i = 0; i < 4; i++) await fingers([[760, 200], [1060, 200]], [[900, 200], [920, 200]]);
   assert.ok(Math.abs((await place()).width - whole) < 2, `${(await place()).width} of ${whole}`);
-  // At this limit, too, fingers shift without a zoom.
+  // Fingers that move together do not zoom the smallest picture either.
   await fingers([[860, 170], [960, 170]], [[920, 170], [1020, 170]]);
   assert.ok(Math.abs((await place()).width - whole) < 2, `${(await place()).width} of ${whole}`);
   assert.equal(await page.locator("#handles .handle").count(), 0);

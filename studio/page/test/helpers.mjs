@@ -1,6 +1,6 @@
-// Starts the host and a browser for the tests. PINHOLE is the program (default: `pinhole` on the
-// path), CHROMIUM the browser. With DIST, the page's script and style are those of that folder, so
-// that the program need not be built anew for each change of them.
+// Starts the host and a browser for the tests. Environment variables: PINHOLE is the program
+// (default: `pinhole` on the path), and CHROMIUM the browser. With DIST, the page gets its script
+// and style from that folder, so that the program need not be built again after each change.
 
 import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -57,7 +57,8 @@ export async function host(context, text = FIGURE, name = "scene.scn") {
 export async function serve(file, { port, folder, browser, lesson } = {}) {
   const scene = file === null ? [] : [file];
   const options = [...(browser === undefined ? ["--no-open"] : []), ...(port === undefined ? [] : ["--port", port]), ...(lesson === undefined ? [] : ["--lesson", lesson])];
-  // The host finds the program that opens a browser on the path, where a test may put its own.
+  // The host looks up the program that opens a browser on the path. A test may put a substitute
+  // there, in the folder `browser`.
   const env = { ...process.env, XDG_STATE_HOME: STATE, PATH: browser === undefined ? process.env.PATH : `${browser}:${process.env.PATH}` };
   const child = spawn(PINHOLE, ["studio", ...scene, ...options], { cwd: folder, env, stdio: ["ignore", "ignore", "pipe"] });
   let said = "";
@@ -73,7 +74,7 @@ export async function serve(file, { port, folder, browser, lesson } = {}) {
   return { address, stop: signal => (child.kill(signal), ended), pid: child.pid };
 }
 
-/** Serves a folder as a web host does. Records the requests. */
+/** Serves a folder as a web server does. Records the requests. */
 export async function site(context, folder) {
   const types = { html: "text/html; charset=utf-8", js: "text/javascript", css: "text/css", wasm: "application/wasm" };
   const requests = [];
@@ -92,7 +93,8 @@ export async function site(context, folder) {
   return { address: `http://127.0.0.1:${server.address().port}/`, requests };
 }
 
-/** Opens the page of a host, with its picture finished. Browser errors go to `page.complaints`. */
+/** Opens the page of a host and waits for its finished picture. The browser's errors are collected
+ * in `page.complaints`. */
 export async function open(browser, { address }, { late, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true, ...options });
   const page = await context.newPage();
@@ -165,7 +167,7 @@ export async function link(page) {
   return page.inputValue("#share-link");
 }
 
-/** Shows the picture or the text on a phone, which has room for one of them. */
+/** Shows the picture or the text on a phone, which has room for only one of them. */
 export async function tab(page, name) {
   const button = page.locator(`#tabs [data-tab=${name}]`);
   if (await button.isVisible()) await button.click();
@@ -174,7 +176,7 @@ export async function tab(page, name) {
 /** Replaces the whole text in the editor, as pasting does. */
 export async function type(page, text) {
   await tab(page, "text");
-  // The click is in the corner, since a click on a colour would open the colour's picker.
+  // A click on a colour would open the colour picker, so the click is in the corner.
   await page.click(".cm-content", { position: { x: 2, y: 5 } });
   await page.keyboard.press("Control+a");
   await page.keyboard.insertText(text);
@@ -193,7 +195,7 @@ export async function onPage(page, [x, y]) {
   );
 }
 
-/** Chooses a tool by a click of a script, since the camera's tools are in a closed menu. */
+/** Chooses a tool. A script clicks it, because the camera's tools are in a closed menu. */
 export async function choose(page, tool) {
   await page.evaluate(tool => document.querySelector(`input[name=tool][value=${tool}]`).click(), tool);
 }
@@ -257,7 +259,7 @@ export async function handle(page, label) {
   return [x + width / 2, y + height / 2];
 }
 
-/** Returns the pixels of the picture, as RGBA bytes in base64. */
+/** Returns the size and a digest of the shown picture's pixels. */
 export async function pixels(page) {
   return page.evaluate(() => {
     const canvas = document.querySelector("canvas");
@@ -265,7 +267,7 @@ export async function pixels(page) {
   });
 }
 
-/** Returns the pixels of a PNG as the browser decodes them. */
+/** Returns the size and a digest of the pixels that the browser decodes from a PNG in base64. */
 export async function decoded(page, png) {
   return page.evaluate(async png => {
     const bytes = Uint8Array.from(atob(png), letter => letter.charCodeAt(0));
@@ -277,7 +279,8 @@ export async function decoded(page, png) {
   }, png.toString("base64"));
 }
 
-/** Adds a function to the page that returns the pixels of a picture, for comparisons. */
+/** Adds the function `bytesOf` to the page, which `pixels` and `decoded` need. It returns the size
+ * and a digest of a picture's pixels, for comparisons. */
 export async function comparing(page) {
   await page.evaluate(() => {
     window.bytesOf = async ({ data, width, height }) => {

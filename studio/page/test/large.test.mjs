@@ -6,7 +6,7 @@ import { FIGURE, finished, hand, handle, host, launch, menu, open, rested, text,
 
 const isLarge = page => page.evaluate(() => !document.querySelector("#undo").checkVisibility());
 
-/** Makes the page large by its key. */
+/** Makes the page large by the key b. */
 async function enlarge(page) {
   await page.focus("#stage");
   await page.keyboard.press("b");
@@ -28,12 +28,12 @@ test("b and the menu make the page large, b and Escape end it, and only a reload
   assert.ok(!(await isLarge(page)));
   await menu(page, "Show", "#large");
   assert.ok(await isLarge(page));
-  // The first Escape closes the menu, and the next one ends it.
+  // The first Escape closes the menu, and the second one makes the page small again.
   await page.keyboard.press("Escape");
   assert.ok(await isLarge(page) && await page.isHidden("#layers"));
   await page.keyboard.press("Escape");
   assert.ok(!(await isLarge(page)));
-  // Escape leaves from the text and from a slider, too; a dialog and a drag take it first.
+  // Escape also makes the page small if the focus is in the text.
   await enlarge(page);
   await page.click(".cm-content", { position: { x: 2, y: 5 } });
   await page.keyboard.press("b");
@@ -79,8 +79,7 @@ test("handles are hit at the size at which they are drawn, in both pictures, and
   assert.ok(await lowest() >= 41, `${await lowest()}`);
   for (const line of ["#outside-lines .line.window:not(.under)", "#lines .line.selected:not(.under)"])
     assert.equal(await page.locator(line).first().evaluate(it => getComputedStyle(it).strokeWidth), "3px", line);
-  // A press at the edge of a handle drags it: in the picture, and the window in the view from
-  // outside.
+  // A press at the edge of a handle drags it, both in the picture and in the view from outside.
   const [x, y] = await handle(page, name);
   await hand(page, [x + 11, y + 4], [30, 0]);
   await rested(page);
@@ -104,7 +103,7 @@ test("the window with the picture alone follows the large page", async t => {
   await rested(page);
   await popup.waitForFunction(before => [...document.querySelector("canvas").getContext("2d").getImageData(640, 360, 1, 1).data].join() !== before, before);
   assert.equal(await pixel(popup), await pixel(page));
-  // The window is as large as before: it has no text and no tools.
+  // The projector window still shows nothing but the picture.
   assert.deepEqual(await popup.evaluate(() => [...document.querySelectorAll("body *")].filter(it => it.checkVisibility() && !["MAIN", "SECTION", "DIV"].includes(it.tagName)).map(it => it.tagName)), ["CANVAS"]);
 });
 
@@ -147,7 +146,7 @@ for (const [width, height] of [[1280, 720], [1920, 1080], [820, 1180], [400, 800
       assert.ok(found.tools.height < 60 && found.tall <= height, JSON.stringify(found.tools));
     }
     assert.ok(found.canvas.width > 0.4 * width, `${found.canvas.width}`);
-    // The eye is in the view, although the glass is beside it.
+    // Although the glass is beside it, the view from outside shows the eye.
     if (isDocked) assert.ok(found.eye.left >= found.dock.left && found.eye.right <= found.dock.right && found.dock.height >= 190, JSON.stringify(found));
   });
 }
@@ -164,7 +163,7 @@ test("? shows the keys, Escape then closes only them, and × leaves the large pa
     await page.keyboard.press("?");
     await page.waitForSelector("#keys-dialog[open]");
     assert.match(await page.innerText("#keys-dialog"), /b or Escape ends it/);
-    // A click on the dialog takes the focus from what had it.
+    // After a click on the dialog's text, no control has the focus.
     await page.click("#keys-dialog dt >> nth=1");
     await page.keyboard.press("b");
     await page.keyboard.press("Escape");
@@ -204,7 +203,7 @@ test("tabs and projector windows answer only what is asked of them, and a copied
   const [own] = await Promise.all([copy.waitForEvent("popup"), copy.click("summary:text('Help')").then(() => copy.click("#projector"))]);
   await own.waitForSelector("#stage");
   assert.notEqual(new URL(own.url()).hash, new URL(windows[0].url()).hash);
-  // After the windows have gone, no pictures are sent.
+  // After the projector windows are closed, no pictures are sent.
   for (const popup of windows) {
     assert.deepEqual(popup.complaints, []);
     await popup.close({ runBeforeUnload: true });

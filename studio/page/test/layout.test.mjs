@@ -1,5 +1,5 @@
-// Tests of the first use of the page: scenes from the menu, new objects, the first problem, and the
-// projector's window.
+// Tests of the page's menus, tools and dialogs: scenes from the menu, new objects, the first
+// problem, and the projector window.
 
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
@@ -9,7 +9,7 @@ import { andFinished, FIGURE, finished, hand, handle, host, launch, menu, onPage
 
 const { SITE } = process.env;
 
-/** The served host, and the static page if it is built. */
+/** The page served by `pinhole studio` and, if SITE names its folder, the static page. */
 const HOSTS = [["served", t => host(t)], ...(SITE === undefined ? [] : [["static", t => site(t, SITE)]])];
 
 for (const [name, start] of HOSTS) {
@@ -28,7 +28,7 @@ for (const [name, start] of HOSTS) {
       await page.keyboard.press("Enter");
       await page.waitForFunction(() => /mine\.scn is saved/.test(document.querySelector("#said").textContent));
       assert.equal(readFileSync(path.join(started.folder, "mine.scn"), "utf8"), example);
-      // Save writes only the new scene, and leaves the earlier file as it is.
+      // Save writes only the new scene's file, and does not change the earlier file.
       await type(page, "camera { eye (0, 1, 9)  lookat (0, 1, 0) }\nsphere { center (0, 1, 0) }\n");
       await page.keyboard.press("Control+s");
       await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
@@ -195,7 +195,7 @@ test("the right button orbits, the middle one pans, Shift and the wheel dolly, a
   await page.click("#undo");
   await rested(page);
   assert.equal(await text(page), FIGURE);
-  // Keys work unless the focus is in a text.
+  // Keys for tools work unless the focus is in a text field.
   await page.focus("#save");
   await page.keyboard.press("v");
   assert.match(await page.textContent("#camera-menu summary"), /view distance/);

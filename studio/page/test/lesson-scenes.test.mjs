@@ -1,4 +1,4 @@
-// Tests of the scenes of lessons and the user's own: how one replaces the other, and what is kept.
+// Tests of how the scene of a lesson and the user's own scene replace each other, and what is kept.
 
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
@@ -7,7 +7,7 @@ import { test } from "node:test";
 import { andFinished, FIGURE, host, launch, link, menu, open, openFile, text, type } from "./helpers.mjs";
 import { choose, names, read } from "./lessons.mjs";
 
-/** Presses the key of Undo in the text. */
+/** Presses the key for Undo in the text. */
 async function undo(page) {
   await page.focus(".cm-content");
   await andFinished(page, () => page.keyboard.press("Control+z"));
@@ -44,7 +44,8 @@ for (const [way, act] of Object.entries(WAYS)) {
     assert.ok(await page.isHidden("#lesson"));
     assert.doesNotMatch(page.url(), /lesson/);
     assert.equal(await page.locator("#draft-choices li").count(), 1);
-    // What the user has made of the lesson is still there, and of the scene after it.
+    // When the lesson is opened again, it has its changed text. When it is closed, the scene that
+    // was opened after it is shown again.
     await choose(page, 1);
     assert.equal(await text(page), changed);
     await andFinished(page, () => page.click("#lesson-close"));
@@ -78,7 +79,7 @@ test("the host's file that was saved elsewhere meanwhile is shown after a lesson
   await undo(page);
   await says("the page follows");
   assert.equal(await text(page), nearer);
-  // If the user's own text is unsaved, the page asks which of the two to keep.
+  // If the user's own text is unsaved, the page asks whether to keep it or the file's text.
   await andFinished(page, () => type(page, `${nearer}// mine\n`));
   await choose(page, 1);
   started.write(FIGURE);

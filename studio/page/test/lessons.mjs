@@ -13,19 +13,19 @@ export async function until(page, words) {
   await page.waitForFunction(words => document.querySelector("#lesson-state").textContent.includes(words), words, { timeout: 15_000 });
 }
 
-/** Opens a lesson by the list, with the mouse. */
+/** Opens a lesson by a click in the list of lessons. */
 export async function choose(page, number) {
   if (await page.isHidden("#lesson")) await page.click("#lessons");
   else await page.click("#lesson-list");
   await andFinished(page, () => page.click(`#lesson-body li:nth-child(${number}) button`));
 }
 
-/** Returns the conditions of the step: whether each holds, and its words. */
+/** Returns for each condition of the current step whether it holds, and its description. */
 export async function conditions(page) {
   return page.locator(".conditions li").evaluateAll(all => all.map(it => [it.classList.contains("holds"), it.children[1].textContent]));
 }
 
-/** Goes on to the last step. */
+/** Goes to the last step of the lesson. */
 export async function last(page) {
   while ((await page.textContent("#lesson-next")) === "Next ▸") await page.click("#lesson-next");
 }

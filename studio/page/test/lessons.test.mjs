@@ -1,5 +1,5 @@
-// Tests of lessons: their list and steps, conditions that are judged while the scene changes,
-// links, and a lesson of a teacher.
+// Tests of lessons: their list and steps, whether conditions follow changes of the scene, links,
+// and a lesson of a teacher.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
@@ -62,7 +62,7 @@ test("the printed page has the open lesson as a whole", async t => {
   await last(page);
   await until(page, "0 of 3 hold");
   const said = await paper();
-  // The title, all steps, and each condition with its mark.
+  // The printed lesson has its title, all steps, and each condition with its mark.
   for (const heading of ["1. The view plane", ...read(names[0], "md").match(/(?<=^## ).*$/gm)]) assert.ok(said.includes(heading), `${heading} in\n${said}`);
   assert.equal(said.match(/○/g).length, 3);
   assert.ok(await page.isHidden("#print-lesson"));
@@ -93,9 +93,9 @@ test("Undo stays in a lesson, and each lesson keeps its text until the page is r
   await choose(page, 3);
   assert.equal(await page.locator("#lines .horizon").count(), 0);
   await andFinished(page, () => page.goBack());
-  // Only the user's own text is offered as a draft, not those of lessons.
+  // Only the user's own text is offered as a draft, not the texts of lessons.
   assert.equal(await page.locator("#draft-choices li").count(), 1);
-  // Back leads to the first lesson as it was left, and from there to the user's own text.
+  // Back leads to the first lesson with its changed text, and from there to the user's own text.
   await andFinished(page, () => page.goBack());
   assert.equal(await text(page), changed[0]);
   await andFinished(page, () => page.goBack());
@@ -125,7 +125,8 @@ test("conditions are judged after a drag and not during it, one request at a tim
   assert.equal(asked.length, 0);
   await page.mouse.up();
   while (asked.length === 0) await page.waitForTimeout(20);
-  // Pauses in typing are longer than the delay before a request, and shorter than the answer's.
+  // The pauses in typing are longer than the delay before the page sends a request, but shorter
+  // than the delay of the answer.
   await page.focus(".cm-content");
   await page.keyboard.press("Control+End");
   for (const letter of "// ab") {
@@ -295,13 +296,14 @@ test("a teacher's lesson runs, with its own scene or a student's, and shows no f
   assert.match(await other.textContent("#lesson-body li:first-child"), /Mine/);
   await andFinished(other, () => other.click("#lesson-body li:nth-child(2) button"));
   assert.equal(await text(other), read(names[0], "scn"));
-  // HTML is parsed in a document without a window, where no handler can run. The browser reports
-  // handlers even there.
+  // The page parses HTML in a document without a window, where no handler can run. The browser
+  // complains about the handlers in it anyway, so these complaints are ignored.
   const complaints = [page, other].flatMap(({ complaints }) => complaints);
   assert.deepEqual(complaints.filter(it => !it.startsWith("Executing inline event handler violates")), []);
 });
 
-/** Starts a host of a teacher's lesson, for a student's file or a new scene. */
+/** Starts a host with a teacher's lesson. The host's scene is a student's file, or a new scene if
+ * `student` is null. */
 async function teacher(t, lesson, student = null) {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-lesson-"));
   const [md, file] = [path.join(folder, "mine.md"), path.join(folder, "student.scn")];
@@ -440,7 +442,7 @@ test("the static page has the lessons, and its engine judges them", { skip }, as
   assert.equal(await text(page), read(names[1], "scn"));
   await andFinished(page, () => type(page, read(names[1], "solution.scn")));
   await until(page, "Solved.");
-  // A condition of this lesson is about the error, for which the engine computes an exact picture.
+  // One condition of lesson 7 is about the error, so the engine must compute an exact picture.
   await choose(page, 7);
   await last(page);
   await until(page, "3 of 4 hold");

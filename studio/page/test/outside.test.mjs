@@ -23,7 +23,7 @@ const center = async locator => {
 const number = (text, field) => Number(new RegExp(`\\b${field}\\s+(-?[\\d.]+)`).exec(text)[1]);
 const vector = (text, field) => new RegExp(`\\b${field}\\s+\\(([^)]*)\\)`).exec(text)[1].split(",").map(Number);
 
-/** Returns the labels that are drawn beside handles. */
+/** Returns the names of handles that are drawn in the view from outside. */
 const labels = page => page.locator("#outside-lines text").allTextContents();
 
 /** Chooses a view by the name of its button: Start, Top, Side or Front. */
@@ -112,7 +112,7 @@ test("an object is dragged along the floor, and what is dragged in the picture i
   await page.selectOption("#objects", { label: "Crate (box)" });
   const own = page.locator('#outside-handles .handle[aria-label="Outside, Crate: center"]');
   const [x, y] = await center(own);
-  // The press is beside the handle, on the crate itself.
+  // The pointer is pressed beside the handle, on the crate itself.
   await hand(page, [x + 17, y + 17], [-25, 14]);
   await rested(page);
   const [a, b, c] = vector(/box.*/.exec(await text(page))[0], "center");
@@ -124,7 +124,7 @@ test("an object is dragged along the floor, and what is dragged in the picture i
   await page.waitForSelector("#outside-lines .held", { state: "attached" });
   await page.mouse.up();
   await page.waitForSelector("#outside-lines .held", { state: "detached" });
-  // The main picture has its note back.
+  // After the drag of the ball, the element for the note is in the main picture again.
   assert.ok(await page.locator("#stage #drag-note").count());
 });
 
@@ -213,7 +213,7 @@ test("it is hidden and shown by a button, the menu and a key, which is remembere
   await outside(page);
   await menu(page, "Show", "#outside-shown");
   assert.ok(await page.isHidden("#outside"));
-  // A small window has no room for it, and the page says so.
+  // A small window has no room for the view or the glass, and the page says so.
   for (const key of ["u", "g"]) {
     await page.setViewportSize({ width: 700, height: 700 });
     await page.focus("#stage");
@@ -317,7 +317,7 @@ test("a camera that a change of the text moves out of the view is shown again", 
   await type(page, FIGURE.replace(/eye .*/, "eye    (0, 12, 40)"));
   await outside(page);
   for (const name of ["eye", "d", "up"]) assert.ok(await isInside(name), name);
-  // If the user has moved the camera out of the view by turning or zooming it, it stays so.
+  // If the user has zoomed so far that the camera is outside of the view, the view stays.
   await page.focus("#outside");
   for (let i = 0; i < 12; i++) await page.keyboard.press("=");
   await outside(page);
@@ -340,7 +340,7 @@ test("the main picture is finished while the server chooses another view", async
       await page.evaluate(name => [...document.querySelectorAll("#dock button")].find(it => it.textContent === name).click(), name);
     });
   }
-  // A frame without a view would take the place of the main picture's.
+  // A request for a frame without a view would replace the request for the main picture.
   assert.ok(sent.length > 20);
   assert.deepEqual(sent.filter(it => it.includes("pinhole/frame") && it.includes('"view":null')), []);
 });
@@ -351,7 +351,7 @@ test("two fingers zoom and shift the view, one turns it, and the text stays", as
   const session = await page.context().newCDPSession(page);
   const touch = (type, ...points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
   const { x, y, height } = await page.locator("#outside").boundingBox();
-  // In the lower corner, no object is below the fingers.
+  // In the lower left corner, no object is under the fingers.
   const [left, low] = [x + 60, y + height - 20];
   const places = async () => {
     await outside(page);
@@ -364,7 +364,7 @@ test("two fingers zoom and shift the view, one turns it, and the text stays", as
   for (let i = 1; i <= 6; i++) await touch("touchMove", [left, low], [left + 60 + 5 * i, low]);
   await touch("touchEnd");
   const nearer = await places();
-  // The distance of the fingers has grown by a half, and the view has followed their middle.
+  // The fingers have moved apart, so the view is zoomed.
   assert.ok(apart(nearer) > 1.3 * apart(before), `${apart(before)} ${apart(nearer)}`);
   await page.click('#dock button:text("Start")');
   assert.ok(apart([(await places())[0], before[0]]) < 2);
@@ -376,7 +376,8 @@ test("two fingers zoom and shift the view, one turns it, and the text stays", as
   }
   await touch("touchEnd");
   const shifted = await places();
-  // What is nearer than the middle of the view moves farther, in the same direction.
+  // Both points move in the direction of the fingers. Points nearer than the middle of the view
+  // move farther.
   for (const i of [0, 1]) {
     const [right, down] = [0, 1].map(axis => shifted[i][axis] - before[i][axis]);
     assert.ok(right > 20 && right < 80 && Math.abs(right + 2 * down) < 6, `${right} ${down}`);
@@ -404,7 +405,8 @@ test("on a page that is higher than wide, the divider follows the pointer, and t
     const from = (await box("#divider")).y;
     await hand(page, [x + width / 2, from + height / 2], [0, by]);
     await outside(page);
-    // The share of the text is a whole number of percents.
+    // The text's share of the page is rounded to whole percents, so the divider may be some pixels
+    // away from the pointer.
     assert.ok(Math.abs((await box("#divider")).y - from - by) <= 8, `${by}`);
   }
   const after = await box("#outside");
@@ -412,7 +414,7 @@ test("on a page that is higher than wide, the divider follows the pointer, and t
   const share = await page.getAttribute("#divider", "aria-valuenow");
   const shares = expected => page.waitForFunction(expected => document.querySelector("#divider").getAttribute("aria-valuenow") === expected, expected, { timeout: 5000 });
   await page.setViewportSize({ width: 1280, height: 720 });
-  // Side by side, the share is another one.
+  // With text and picture side by side, the text has a share of its own.
   await shares("42");
   await page.setViewportSize({ width: 820, height: 1180 });
   await shares(share);
@@ -424,7 +426,7 @@ test("the view is downloaded as an SVG, with its picture, the camera, and the ou
   const [download] = await Promise.all([page.waitForEvent("download"), menu(page, "Download", "#download-outside")]);
   assert.equal(download.suggestedFilename(), "scene-outside.svg");
   const svg = readFileSync(await download.path(), "utf8");
-  // It is drawn by itself, without the page and its style.
+  // The SVG is shown in an empty page, without Studio's style.
   const alone = await page.context().browser().newPage();
   await alone.setContent(svg);
   const found = await alone.evaluate(async () => {
@@ -450,7 +452,8 @@ test("the view is downloaded as an SVG, with its picture, the camera, and the ou
   assert.deepEqual(found.camera.sort(), ["far", "frustum", "near", "rays", "window"]);
   // All lines are dark, for printers without colours.
   for (const ink of found.inks) assert.ok(ink.match(/\d+/g).map(Number).reduce((sum, it) => sum + it) < 3 * 100, ink);
-  // The page shows its lines as before, and while the view is hidden there is nothing to download.
+  // The page does not keep the outlines of the SVG. While the view is hidden, it cannot be
+  // downloaded.
   await outside(page);
   assert.equal(await page.locator("#outside-lines .outline").count(), 0);
   await page.click("#outside-hide");
@@ -467,7 +470,7 @@ test("a sheet of paper has picture, view and text on one page, whatever the wind
     const before = await placed();
     const pdf = await page.pdf({ preferCSSPageSize: true });
     assert.equal((pdf.toString("latin1").match(/\/Type\s*\/Page\b/g) ?? []).length, 1, `${width}`);
-    // Afterwards, the page is as it was.
+    // After printing, the page is as it was before.
     await rested(page);
     if (width > 760) await outside(page);
     await page.waitForTimeout(300);
@@ -488,7 +491,7 @@ test("a sheet of paper has picture, view and text on one page, whatever the wind
 });
 
 test("handles that are moved aside stay in the view, and the far plane is in it", async t => {
-  // Fingers need larger handles, so more of them are moved aside.
+  // With a touch screen, handles are larger, so more handles are moved aside to avoid overlaps.
   const page = await open(await launch(t), await host(t, FIGURE.replace("d      2.75", "d      2.75\n  far    14")), { viewport: { width: 1280, height: 720 }, hasTouch: true });
   await outside(page);
   const box = await page.locator("#outside").boundingBox();
@@ -551,7 +554,7 @@ test("an SVG has the same size beside the glass and from another window, and non
     const [download] = await Promise.all([page.waitForEvent("download"), menu(page, "Download", "#download-outside")]);
     const svg = readFileSync(await download.path(), "utf8");
     widths.push(/<svg[^>]* width="(\d+)"/.exec(svg)[1]);
-    // Other programs honour the opacity of a shape, but not of a picture.
+    // Some programs ignore the opacity of an image, so a translucent rectangle makes it pale.
     assert.doesNotMatch(/<image[^>]*>/.exec(svg)[0], /opacity/);
     assert.match(svg, /<image[^>]*\/><rect[^>]* fill-opacity="0\.4/);
     if (width === 1280) continue;

@@ -13,7 +13,7 @@ const show = async (page, layer) => {
   await page.keyboard.press("Escape");
 };
 
-/** Returns the marks of the vanishing points, by axis. */
+/** Returns the labels of the vanishing points. */
 const marked = page => page.locator("#lines text").allTextContents();
 
 test("lines of boxes meet at the vanishing points, which follow the camera", async t => {

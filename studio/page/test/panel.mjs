@@ -1,5 +1,5 @@
-// Opens the page in a panel of VS Code, for the tests. The extension, as it is packaged, runs in a
-// substitute for VS Code, with the real program as its server; the panel's page is in Chromium.
+// Opens the page in a panel of VS Code, for the tests. The packaged extension runs in a substitute
+// for VS Code, with the real program as its server. Chromium shows the panel's page.
 
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -26,8 +26,8 @@ export function packed() {
 }
 
 /**
- * Opens the panel beside scenes, of which the first is shown. Returns the page, the documents, the
- * substitute for VS Code, and the text editor of the first document.
+ * Opens documents with the scenes `texts`, and the panel for the first one. Returns the page, the
+ * documents, the substitute for VS Code, and the text editor of the first document.
  */
 export async function opened(context, browser, texts, { theme = "dark", width = 700, height = 800, waits = true } = {}) {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-panel-"));
@@ -56,7 +56,7 @@ export async function opened(context, browser, texts, { theme = "dark", width = 
       setState: state => sessionStorage.setItem("state", JSON.stringify(state)),
     });
   });
-  // The panel loads what its roots contain, and nothing else.
+  // As in VS Code, the panel can load only files in its `localResourceRoots`.
   await page.route("**", route => {
     const url = new URL(route.request().url());
     if (url.href === PANEL) return route.fulfill({ contentType: "text/html", body: inVsCode(panel.webview.html, theme) });
@@ -71,7 +71,7 @@ export async function opened(context, browser, texts, { theme = "dark", width = 
   return { page, documents, document: documents[0], vscode, seen, panel, run: name => seen.commands.get(name)(), textEditor: vscode.window.visibleTextEditors[0] };
 }
 
-/** Adds to a page what VS Code adds: its own style, the theme's colours, and classes. */
+/** Adds to a page what VS Code adds: a style, and the theme's colours and classes. */
 function inVsCode(html, theme) {
   const colors = Object.entries(COLORS[theme]).map(([name, color]) => `--vscode-${name}: ${color}`).join("; ");
   return html

@@ -1,5 +1,5 @@
-// Tests of the page in a panel of VS Code: Chromium shows what the packaged extension gives it, and
-// the extension's server is the real one. The editor around it is a substitute.
+// Tests of the page in a panel of VS Code. Chromium shows the page of the packaged extension, whose
+// server is the real program. VS Code itself is replaced by a substitute.
 
 import assert from "node:assert/strict";
 import { before, test } from "node:test";
@@ -42,7 +42,7 @@ test("the picture follows the text as it is typed, and says when it has errors",
   assert.equal(await page.textContent("#stale"), "The text has errors. This is its last good picture.");
   document.type("spher", "sphere");
   await page.waitForSelector("#stale", { state: "hidden" });
-  // The text is the editor's own, and so is what belongs to it.
+  // VS Code shows the text and its problems, so the page hides its own editor and their controls.
   for (const hidden of ["header", "#editor", "#tabs", "#divider", "#problems", "#draft-bar", "#connection-bar"]) assert.ok(await page.isHidden(hidden), hidden);
   assert.equal(panel.page.html.length, 1);
   assert.deepEqual(page.complaints, []);
@@ -64,7 +64,7 @@ test("a drag by a real pointer changes the text, as one step for Undo", { timeou
   assert.equal(document.steps.length, 1);
   await run("pinhole.picture.undo");
   assert.equal(document.getText(), FIGURE);
-  // The page follows Undo, so that the ball is where it was.
+  // The page follows Undo: the ball is at its old place again.
   await rested(page, document);
   await page.mouse.move(...(await onPage(page, BALL)));
   await page.waitForFunction(() => document.querySelector("#pointed").textContent.startsWith("Ball"));
@@ -94,7 +94,8 @@ test("pointing says what is hit, a click selects its source, and a cursor in the
   const active = document.positionAt(FIGURE.indexOf("Crate"));
   seen.fire("selection", { textEditor, kind: 2, selections: [{ active }] });
   await page.waitForSelector(".handle[aria-label='Crate: center']");
-  // What the editor has told is not told back, so that a selection of several words stays.
+  // The page does not report a cursor back that VS Code has sent. Otherwise, a selection of several
+  // words in VS Code would be lost.
   assert.deepEqual(textEditor.selection.start, start);
   await page.keyboard.press("Delete");
   await until(() => !document.getText().includes("Crate"));
@@ -110,7 +111,7 @@ test("the view from outside is there, and its drags change the text", { timeout 
   await rested(page, document);
   assert.ok(d(document.getText()) > d(FIGURE) + 0.2, document.getText());
   assert.equal(document.steps.length, 1);
-  // A drag beside objects turns the view, and leaves the text.
+  // A drag beside objects turns the view and does not change the text.
   const turned = document.getText();
   const eye = await page.locator("#outside-handles .handle[data-handle=eye]").boundingBox();
   const stage = await page.locator("#outside").boundingBox();
@@ -141,7 +142,7 @@ test("the glass opens, layers are drawn, and both narrow and low panels have roo
         return eye && eye.left >= stage.left && eye.right <= stage.right && eye.top >= stage.top && eye.bottom <= stage.bottom;
       }));
     }
-    // With a selection, there are the most tools. Their place is kept, so that nothing moves.
+    // A selected object adds tools. Their space is reserved, so the picture does not move.
     const before = await page.locator("#stage").boundingBox();
     await page.mouse.click(...(await onPage(page, BALL)));
     await page.waitForSelector("#handles [data-handle]", { state: "attached" });

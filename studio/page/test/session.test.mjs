@@ -190,7 +190,7 @@ test("a page of another local server gets no access", async t => {
   t.after(() => server.close());
   const theirs = `http://127.0.0.1:${server.address().port}/`;
   const page = await open(await launch(t), started);
-  // The request is made from Studio's own tab, and from another tab of the same browser.
+  // The other server's page tries to reach Studio, first from a new tab, then from Studio's tab.
   const other = await page.context().newPage();
   await other.goto(theirs);
   const found = await other.evaluate(

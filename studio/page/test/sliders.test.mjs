@@ -1,4 +1,5 @@
-// Tests of sliders for definitions and numbers: their limits, playing them, and errors in the text.
+// Tests of sliders for definitions and numbers: their limits, playing, recording, and errors in the
+// text.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -18,7 +19,7 @@ async function thumb(page, at = 0) {
   });
 }
 
-/** Waits until the first slider has a given limit. */
+/** Waits until the first slider has the limit `value`, where `end` is `min` or `max`. */
 async function until(page, end, value) {
   await page.waitForFunction(([end, value]) => document.querySelector(".slider-row input")?.[end] === value, [end, value]);
 }
@@ -114,7 +115,7 @@ test("a slider stays under the pointer while its value is an error, below the pr
     await page.mouse.move(0, y, { steps: 5 });
     await page.mouse.up();
     await page.waitForSelector("#problem-list:not([hidden])");
-    // The slider is wholly visible, and the problem is above it.
+    // The whole slider is visible, and the problem is above it.
     await page.waitForTimeout(400);
     const [row, problem, footer] = await Promise.all([".slider-row", "#problem-list", "footer"].map(it => page.locator(it).boundingBox()));
     assert.ok(problem.y + problem.height <= row.y + 1 && row.y + row.height <= footer.y + 1, `${width} × ${height}`);
@@ -210,8 +211,8 @@ test("a range behind a value that is not a number is reported", async t => {
   for (const [said, has] of rows) assert.ok(!has && /^[rv]\s+a range is for a number/.test(said), said);
 });
 
-/** Reads an animation in the browser: its size, and of each picture its duration and its bytes'
- * digest. */
+/** Decodes an animation in the browser. Returns its repetitions, and for each picture its size,
+ * duration and a digest of its pixels. */
 async function animation(page, bytes) {
   return page.evaluate(async base64 => {
     const data = Uint8Array.from(atob(base64), letter => letter.charCodeAt(0));
@@ -233,7 +234,8 @@ async function animation(page, bytes) {
   }, bytes.toString("base64"));
 }
 
-// The program renders a recording on several threads, the engine of the static page in slices.
+// The program renders a recording on several threads; the static page's engine renders it in
+// slices. Both must give the same pictures.
 for (const isStatic of [false, true]) {
   const skip = isStatic && process.env.SITE === undefined ? "SITE names no folder" : false;
   test(`a number recorded in ${isStatic ? "the static page" : "the program's page"} is an animation of its whole range, of full pictures, and the text stays`, { skip }, async t => {
@@ -252,7 +254,7 @@ for (const isStatic of [false, true]) {
     assert.equal(frames.length, 7);
     const time = frames.reduce((sum, it) => sum + it.time, 0);
     assert.ok(Math.abs(time - 4000) < 10, `${time}`);
-    // Each picture is that of the program, at the scene's own size and samples.
+    // Each picture equals one that `pinhole render` makes, with the scene's own size and samples.
     for (const [i, frame] of frames.entries()) {
       const alone = await animation(page, rendered(started.folder, small.replace("let r = 1", `let r = ${0.5 + 0.25 * i}`)));
       assert.deepEqual([frame.size, frame.digest], [[320, 180], alone.frames[0].digest], `${i}`);
@@ -279,7 +281,7 @@ test("a recording has at most 60 pictures, tells its progress, and ends by Escap
     assert.equal(await page.locator(".record[aria-pressed]").count(), 0);
   }
   assert.deepEqual(downloads, []);
-  // Nothing is left running at the host: another file is made at once.
+  // After a cancelled recording, the host is free: it renders another one at once.
   await type(page, scene("let r = 1 // [0.5:0.001:2]", "radius 1", "radius r").replace("width 1280  height 720", "width 64  height 36"));
   await rested(page);
   const [download] = await Promise.all([page.waitForEvent("download"), page.click('[aria-label="Record r"]')]);

@@ -1,5 +1,5 @@
-// Tests with a slow host: drags are still carried out, a note says that the page waits, and every
-// picture is finished in the end.
+// Tests with a slow host: drags still change the text, a note says that the page waits, and the
+// last picture is finished.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -7,8 +7,8 @@ import { comparing, decoded, FIGURE, hand, handle, host, launch, onPage, open, p
 
 const LATE = 1500;
 /**
- * Maximum time until the text has followed the pointer, in milliseconds. It allows for the answers
- * to two edits, the one that is under way and the last one, and for the page's own work.
+ * Maximum time until the text has followed the pointer, in milliseconds. In this time, the host
+ * answers two requests for edits, and the page has 1200 ms for its own work.
  */
 const BEHIND = 2 * LATE + 1200;
 const BALL = [455, 320];
@@ -42,10 +42,11 @@ test("a handle arrives where it was released, however late the host answers", as
     await rested(page);
   }
   for (const [name, drag] of Object.entries(DRAGS)) for (const slow of ["pinhole/drag", "pinhole/frame", "pinhole/pick"]) {
-    // If an object is dragged without a handle, another object is selected before the drag.
+    // A drag of the ball itself, not of its handle, must select the ball, so another object is
+    // selected before.
     await page.selectOption("#objects", { label: name === "object" ? "Crate (box)" : "Ball (sphere)" });
     await rested(page);
-    // Only the edits must be in time, so a picture may take much longer.
+    // The text must follow in time even if pictures take much longer.
     late[slow] = slow === "pinhole/frame" ? 4 * BEHIND : LATE;
     await dragged(page, drag);
     const begin = Date.now();

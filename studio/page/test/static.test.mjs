@@ -1,5 +1,5 @@
-// Tests of the static page: its engine runs in a web worker, without host or file. SITE is its
-// folder.
+// Tests of the static page, whose engine runs in a web worker, without a host or a file. The
+// environment variable SITE names the page's folder.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -88,11 +88,11 @@ test("the static page stores drafts in the browser and offers them after a reloa
   assert.equal(await text(page), FIGURE);
   await andFinished(page, () => page.click("#draft-choices >> text=Restore"));
   assert.equal(await text(page), scene);
-  // The continued draft keeps its key, so only one draft is offered.
+  // The restored text is stored under the key of the old draft, so only one draft is offered.
   await page.waitForTimeout(900);
   await page.reload();
   await page.waitForSelector("#draft-bar:not([hidden])");
-  // A text that is changed before the answer to the offer is stored beside the offered draft.
+  // While a draft is offered, the user changes the text. The changed text becomes a second draft.
   const other = FIGURE.replace("radius 1", "radius 0.5");
   await andFinished(page, () => type(page, other));
   await page.waitForTimeout(900);

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { andFinished, comparing, decoded, FIGURE, finished, hand, host, launch, menu, open, pixels, rendered, rested, tab, text, type } from "./helpers.mjs";
 
-/** Waits until the editor has a text. */
+/** Waits until the editor has the text `expected`. */
 async function until(page, expected) {
   for (let i = 0; i < 40 && (await text(page)) !== expected; i++) await page.waitForTimeout(25);
   assert.equal(await text(page), expected);
@@ -137,7 +137,7 @@ test("a slider, a key and a drag keep a number within its limits", async t => {
     const slider = page.locator(".slider input");
     await page.waitForFunction(least => document.querySelector(".slider input")?.min === least, least);
     const { x, y, width, height } = await slider.boundingBox();
-    // The thumb is dragged beyond the left end of the slider.
+    // The thumb is dragged beyond the left end of the slider, so the number gets its least value.
     await hand(page, [x + width / 2, y + height / 2], [-width, 0]);
     await rested(page);
     assert.ok(await page.isHidden("#stale"), await text(page));
@@ -187,8 +187,8 @@ test("texts and names of a scene are never interpreted as HTML", async t => {
     await page.waitForTimeout(500);
   }
   assert.equal(await page.evaluate(() => window.hit), undefined);
-  // Except for the figures in the language reference, the page must have no pictures, and its body
-  // no scripts.
+  // The HTML in the texts must not become pictures or scripts. The only pictures of the page are
+  // the figures in the language reference.
   assert.equal(await page.locator("img:not(.cm-widgetBuffer, #language-dialog img), body script").count(), 0);
 });
 
@@ -204,8 +204,8 @@ test("a key press requests its picture first, also if it selects another object"
   // the end of the line.
   for (let i = 0; i < 2; i++) await page.keyboard.press("End");
   await rested(page);
-  // If the cursor is after a space behind the block, the object is not selected. When the space is
-  // deleted, it is selected again.
+  // A space after the block separates the cursor from it, so the object is no longer selected. When
+  // the space is deleted, the object is selected again.
   for (const key of ["Space", "Backspace"]) {
     asked.length = 0;
     await andFinished(page, () => page.keyboard.press(key));

@@ -45,8 +45,8 @@ test("messages show invisible characters as codes", async t => {
   const page = await open(await launch(t), started);
   await page.click("#problems");
   for (const character of ALL.slice(0, 10)) {
-    // Each text has the character in another place: as an error itself, in a message's quotation,
-    // or in the text of a fix.
+    // In these texts, the character is an error itself, or is quoted in a message or in the text of
+    // a fix.
     for (const wrong of [`${character} camera`, `sphere { radius "a${character}b" }`, `let a = (1, 2, "${character}`, `sphere { center [1, 2, /*${character}*/ 3] }`]) {
       const before = await page.textContent("#problem-list");
       await type(page, wrong);

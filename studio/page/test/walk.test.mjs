@@ -1,5 +1,5 @@
-// A random walk of actions. After any sequence of actions, the picture shows the text, and Undo
-// restores the first text. STEPS is the number of actions; SEED selects the sequence.
+// A random sequence of actions, after which the picture must show the text, and Undo must restore
+// the first text. STEPS is the number of actions; SEED selects the sequence.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,5 +1,5 @@
-//! Tests of the view from outside: an observer sees the scene and its camera, and drags of the
-//! camera's handles there change the numbers of the text.
+//! Tests of the view from outside, in which an observer sees the scene and its camera. Drags of the
+//! camera's handles in this view change the numbers of the text.
 
 use glam::{DVec2, DVec3};
 use pinhole::{
@@ -260,8 +260,8 @@ fn a_dragged_angle_opens_the_frustum_to_the_pointer() {
     }
 }
 
-/// A window that is dragged along the view axis changes `d`, its distance from the eye. A window
-/// that is dragged to the eye or behind it stays just in front of the eye.
+/// Dragging the camera's window along the view axis changes `d`, the window's distance from the
+/// eye. A window that is dragged to the eye or behind it stays just in front of the eye.
 #[test]
 fn a_window_dragged_along_the_axis_changes_d_as_far_as_the_pointer_moved() {
     let text = "camera { eye (0, 0, 0) direction (0, 0, -1) d 2 } sphere { center (0, 0, -9) }";
@@ -330,7 +330,7 @@ fn a_handle_dragged_too_far_stays_at_its_last_place() {
 }
 
 /// The ray through a pixel is drawn from the eye to the surface that the ray hits. Two points of
-/// the ray are marked: in the window, and on the surface.
+/// the ray are marked: the one in the camera's window, and the one on the surface.
 #[test]
 fn the_pointed_ray_ends_at_what_it_meets() {
     let scene = read("camera { eye (0, 1, 8) lookat (0, 1, 0) d 2 } sphere { center (0, 1, 0) }");

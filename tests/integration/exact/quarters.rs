@@ -9,7 +9,8 @@ fn quarters_add_up_to_the_pixel_in_every_example() {
     }
 }
 
-/// The objects of the generated scenes intersect one another.
+/// Compares exact pictures of generated scenes, whose objects intersect one another, with pictures
+/// of twice the resolution and with samples.
 #[test]
 fn generated_scenes_add_up_by_quarters_and_agree_with_samples() {
     for scene in ordinary([24, 18], 7).take(24) {
@@ -18,8 +19,8 @@ fn generated_scenes_add_up_by_quarters_and_agree_with_samples() {
     }
 }
 
-/// Rows of tilted triangles lie in one pixel. The planes of the triangles intersect everywhere in
-/// the pixel, but the triangles themselves are side by side and do not hide one another.
+/// A pixel shows rows of tilted triangles. The planes of the triangles intersect everywhere in the
+/// pixel, but the triangles themselves are side by side and do not hide one another.
 #[test]
 fn quarters_add_up_for_tilted_triangles_side_by_side() {
     let mut random = Random::new(71);

@@ -248,8 +248,8 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
 ///
 /// A fix may have joined two successive names of `before` to a known word: `look at` becomes
 /// `lookat`. Each pair that may have been joined has a bit of `joins`, beginning with the lowest
-/// bit for the last pair in the text. If the bit is 1, the pair is compared as one name. The
-/// highest bit also stands for all pairs beyond the number of bits.
+/// bit for the last pair in the text. If the bit is 1, the pair is compared as one name. The sign
+/// bit, which shifting repeats, stands for all earlier pairs.
 fn unmatched_names(
     before: &[String],
     after: &[String],

@@ -175,8 +175,8 @@ fn suggested_fields_and_targets_are_valid_where_they_are_suggested() {
         "k2",
         "negativ",
     ] {
-        // Of the values that are lists, only (1, 1, 9) is used. Another list may contradict the
-        // scene: for example, an eye at (0, 1, 0) would be at the `lookat` point.
+        // Lists other than (1, 1, 9) are left out, because they may contradict the scene: for
+        // example, an eye at (0, 1, 0) would be at the `lookat` point.
         let values = values
             .into_iter()
             .filter(|value| !value.starts_with('(') || *value == "(1, 1, 9)");

@@ -1,4 +1,4 @@
--- Configuration of the language server. Neovim 0.11 and newer find it by the name of this file.
+-- Configuration of the language server. Neovim 0.11 and newer find the file by its name.
 return {
   cmd = { "pinhole", "lsp" },
   filetypes = { "pinhole" },

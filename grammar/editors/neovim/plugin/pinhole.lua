@@ -4,7 +4,7 @@ if vim.g.pinhole_no_lsp then
   return
 end
 
-if vim.lsp.enable then -- Neovim 0.11 and newer: lsp/pinhole.lua says how.
+if vim.lsp.enable then -- Neovim 0.11 and newer read the configuration in lsp/pinhole.lua.
   vim.lsp.enable("pinhole")
   return
 end

@@ -1,7 +1,8 @@
-// The copy of a scene's text that the page of the panel has: its changes, and how it differs from
-// the editor's text. Both texts have LF as their line ends.
+// The panel's page has a copy of the scene's text. This module applies changes to the copy, and
+// compares it with the editor's text. Both texts have LF as their line ends.
 
-/** Returns `text` with LF as its line ends, and without unpaired surrogates, as the page has it. */
+/** Returns `text` as the page stores it: with LF as its line ends, and without unpaired surrogates.
+ */
 function normal(text) {
   return text.replace(/\r\n?/g, "\n").toWellFormed();
 }
@@ -21,10 +22,10 @@ function offset(text, { line, character }) {
 }
 
 /**
- * Returns the edits that turn `before` into `after`, as `{ line, from, to, lastLine, text }`: from
- * the character `from` of `line` to the character `to` of `lastLine`. If only numbers in some lines
- * differ, as after a drag, there is one small edit for each of these lines, so that cursors and
- * marks in the editor stay where they are.
+ * Returns the edits that turn `before` into `after`, as `{ line, from, to, lastLine, text }`. An
+ * edit replaces the characters from `from` in `line` to `to` in `lastLine`. If the number of lines
+ * is the same, as after a drag, each differing line has one small edit. Thus cursors and marks in
+ * the editor stay where they are.
  */
 function differences(before, after) {
   if (before === after) return [];

@@ -60,8 +60,8 @@ async function start() {
       // The panel's page has texts of its own at the server, which are not files of the editor.
       middleware: { handleDiagnostics: (uri, diagnostics, next) => isOfPage(uri) || next(uri, diagnostics) },
       errorHandler: {
-        // A message to a server that has just crashed fails. By default, the client then stops, so
-        // that it does not start the server again when the connection is closed a moment later.
+        // A message to a server that has just crashed fails. By default, the client would then
+        // stop, and would not start the server again when the connection is closed a moment later.
         error: () => ({ action: ErrorAction.Continue, handled: true }),
         closed: () => restarts.closed(),
       },
@@ -71,7 +71,7 @@ async function start() {
   const restarts = started.createDefaultErrorHandler();
   client = started;
   pictures.serve(client);
-  // The client has shown errors already.
+  // The client itself shows the error, so it is ignored here.
   await client.start().catch(() => {});
 }
 
@@ -86,7 +86,7 @@ async function restart() {
   await start();
 }
 
-/** Returns the path of the program; undefined if it is not found. The user is then told so. */
+/** Returns the path of the program. If it is not found, tells the user and returns undefined. */
 function binary() {
   const setting = vscode.workspace.getConfiguration("pinhole").get("path", "");
   const found = findBinary(setting, vscode.workspace.workspaceFolders?.[0]?.uri.fsPath, home);
@@ -110,7 +110,7 @@ async function chooseBinary() {
   const [file] = (await vscode.window.showOpenDialog({ title: "The program pinhole", openLabel: "Use" })) ?? [];
   if (file === undefined) return;
   const configuration = vscode.workspace.getConfiguration("pinhole");
-  // A setting of the workspace, if there is one, is changed, since it overrides the global setting.
+  // If the workspace has this setting, it is changed there, because it overrides the global one.
   const { workspaceValue } = configuration.inspect?.("path") ?? {};
   const { Global, Workspace } = vscode.ConfigurationTarget;
   await configuration.update("path", file.fsPath, workspaceValue === undefined ? Global : Workspace);
@@ -184,7 +184,8 @@ function run(command, args, cancellation) {
   });
 }
 
-/** Returns the first line of each problem in a report: the editor shows the places in the text. */
+/** Returns only the first line of each problem in a report. The editor shows where the problems
+ * are. */
 function summary(said) {
   const heads = said.split("\n").filter(line => /^error\b/.test(line));
   return (heads.length > 0 ? heads : said.trim().split("\n")).map(line => line.replace(/^error(\[[\w:]+\])?: /, "")).join("\n");

@@ -1,7 +1,7 @@
-// The picture beside the text: a panel with the page of Pinhole Studio. The page opens a copy of
-// the scene's text at the language server, so that each of its requests is about the text that it
-// knows. This module carries its messages, and keeps the copy and the editor's text the same.
-// docs/protocol.md describes the messages.
+// The picture beside the text: a panel with the page of Pinhole Studio. The page opens its own copy
+// of the scene's text at the language server, so that its requests are about the text that it
+// knows. This module passes messages between page and server, and keeps the copy equal to the
+// editor's text. docs/protocol.md describes the messages.
 
 const { randomBytes } = require("node:crypto");
 const fs = require("node:fs");
@@ -10,14 +10,16 @@ const vscode = require("vscode");
 const { State } = require("vscode-languageclient/node");
 const { changed, differences, normal } = require("./copy");
 
-/** Kind of the panel, by which the editor restores it, and the key of the scene that it shows. */
+/** Type of the panel, by which the editor restores it. Also the key under which the address of the
+ * shown scene is stored. */
 const KIND = "pinhole.picture";
 
-/** The page's address of its copy; its other texts are those with which drags begin. */
+/** Address of the page's copy at the server. The page's other texts, `drag:…`, are the texts before
+ * drags. */
 const COPY = "studio:///scene.scn";
 const OWN = /^(?:studio:\/\/\/scene\.scn|drag:\d+)$/;
 
-/** What the page may ask the server; nothing else is carried. */
+/** Requests and notifications of the page that are passed on to the server. No others are. */
 const REQUESTS = ["frame", "pick", "objects", "overlays", "drag", "add", "samples", "glass"].map(name => `pinhole/${name}`);
 const NOTIFICATIONS = ["didOpen", "didChange", "didClose"].map(name => `textDocument/${name}`);
 
@@ -26,12 +28,13 @@ const INTERNAL_ERROR = -32603;
 
 const isScene = document => document?.languageId === "pinhole" && ["file", "untitled"].includes(document.uri.scheme);
 
-/** Whether an address of the editor is that of a text of the panel's page. */
+/** Returns whether a URI belongs to a text of the panel's page, not to a file. */
 const isOfPage = ({ scheme }) => ["studio", "drag"].includes(scheme);
 
 const isPosition = it => [it?.line, it?.character].every(number => Number.isInteger(number) && number >= 0);
 
-/** Opens panels, one at a time, and has them follow the scene in the active editor. */
+/** Opens the panel with the picture. At most one panel is open; it shows the scene in the active
+ * editor. */
 class Pictures {
   panel;
   client;
@@ -45,14 +48,16 @@ class Pictures {
       commands.registerCommand("pinhole.picture.save", () => this.panel?.save()),
       window.registerWebviewPanelSerializer(KIND, { deserializeWebviewPanel: panel => this.restore(panel) }),
       window.onDidChangeActiveTextEditor(() => this.followActive()),
-      // A document is opened anew when its language is chosen, so that it may become a scene.
+      // When the user chooses the language of a document, the editor opens it again. It may then be
+      // a scene.
       workspace.onDidOpenTextDocument(() => this.followActive()),
       window.onDidChangeTextEditorSelection(event => this.panel?.moved(event)),
       workspace.onDidChangeTextDocument(({ document }) => this.panel?.edited(document)),
     );
   }
 
-  /** Uses this client from now on. It may not have started yet, and may start again. */
+  /** Uses this client of the language server from now on. The server may start later, and may be
+   * started again after a crash. */
   serve(client) {
     this.client = client;
     client.onDidChangeState(({ newState }) => {
@@ -79,7 +84,7 @@ class Pictures {
     this.panel.follow(editor.document, editor.viewColumn);
   }
 
-  /** Fills a panel that was open before the window was loaded anew. */
+  /** Restores the content of a panel that was open before the window was reloaded. */
   async restore(webviewPanel) {
     const { activeTextEditor, visibleTextEditors } = vscode.window;
     const editor = [activeTextEditor, ...visibleTextEditors].find(it => isScene(it?.document));
@@ -108,21 +113,24 @@ class Panel {
   column = vscode.ViewColumn.One;
   /** Whether the page waits for the first message of a conversation. */
   isReady = false;
-  /** The conversation with the page; undefined between a page's or a server's end and the next. */
+  /** The conversation (exchange of messages) with the loaded page and the running server; undefined
+   * if there is none. Its identity shows whether a late answer still belongs to it. */
   conversation;
   /** The page's texts that are open at the server. */
   open = new Set();
   /** The page's copy of the text. */
   copy = "";
-  /** Number of texts that were sent to the page, and that it has not taken over yet. Until then,
-   * its changes are of an older text, and are dropped. */
+  /** Number of texts that were sent to the page and not confirmed by `panel/followed` yet. Until
+   * then, the page's changes are changes of an older text, and are dropped. */
   sent = 0;
-  /** The text that was last written into the editor; undefined after other changes there. */
+  /** Text that the panel has last written into the editor; undefined if something else has changed
+   * the editor's text since. */
   written;
   /** The drag that is under way in the page; `hasWritten` says whether it has changed the editor's
    * text. */
   drag;
-  /** Messages from the page are handled one by one, and so are changes of the editor. */
+  /** Promises that settle when all earlier messages of the page (`messages`) and all earlier
+   * changes of the editor (`work`) are done. The next message or change waits for them. */
   messages = Promise.resolve();
   work = Promise.resolve();
 
@@ -140,13 +148,13 @@ class Panel {
 
   get isServed() { return this.client?.state === State.Running; }
 
-  /** The scene's document if it is open, and else undefined. */
+  /** The scene's document; undefined if it is not open. */
   get document() { return vscode.workspace.textDocuments.find(it => it.uri.toString() === this.uri); }
 
-  /** The scene's editor if it is visible, and else undefined. */
+  /** The scene's editor; undefined if it is not visible. */
   get editor() { return vscode.window.visibleTextEditors.find(it => it.document.uri.toString() === this.uri); }
 
-  /** Shows another scene. The page is loaded anew, so that nothing in it is of the scene before. */
+  /** Shows another scene. Reloads the page, so that nothing of the previous scene stays in it. */
   follow(document, column) {
     this.column = column ?? this.column;
     const uri = document.uri.toString();
@@ -158,7 +166,7 @@ class Panel {
     this.webviewPanel.webview.html = html(this.webviewPanel.webview, this.folder);
   }
 
-  /** Begins a conversation if page and server are ready. */
+  /** Begins a conversation if the page and the server are ready. */
   begin() {
     const { document } = this;
     if (!this.isReady || !this.isServed || document === undefined) return;
@@ -170,7 +178,7 @@ class Panel {
     if (cursor !== undefined) this.post("panel/cursor", { position: cursor });
   }
 
-  /** Ends the conversation, and the texts of the page at the server. */
+  /** Ends the conversation, and closes the page's texts at the server. */
   forget() {
     this.conversation = undefined;
     this.isReady = false;
@@ -206,7 +214,8 @@ class Panel {
     return this.document ?? await vscode.workspace.openTextDocument(vscode.Uri.parse(this.uri)).then(it => it, () => undefined);
   }
 
-  /** Carries a message of the page to the server if it is one of those that the page may send. */
+  /** Handles a message from the page. Passes it on to the server only if it is in `REQUESTS` or
+   * `NOTIFICATIONS` and about a text of the page. */
   async handle({ id, method, params }, isCurrent) {
     if (method === "panel/followed") this.sent = Math.max(0, this.sent - 1);
     else if (method === "panel/cursor" && isPosition(params?.position)) this.queue(() => this.select(params.position));
@@ -228,8 +237,8 @@ class Panel {
     if (isCurrent()) this.send({ jsonrpc: "2.0", id, ...answer });
   }
 
-  /** Keeps account of the page's texts. While the page has the text of a drag open, its changes of
-   * the copy are one step for Undo. */
+  /** Follows which texts the page opens, changes and closes. While a text `drag:…` is open, a drag
+   * is under way, and all changes of the copy are one step for Undo. */
   note(method, { textDocument: { uri, text }, contentChanges }) {
     const isClosed = method === "textDocument/didClose";
     if (isClosed) this.open.delete(uri);
@@ -245,7 +254,7 @@ class Panel {
     }
   }
 
-  /** Writes the page's copy, as it is now, into the editor. `isLast` ends a step for Undo. */
+  /** Writes the page's present copy into the editor. `isLast` ends a step for Undo. */
   change({ drag = { hasWritten: false }, isLast }) {
     const { copy } = this;
     if (this.sent === 0) this.queue(() => this.write({ copy, drag, isLast }));
@@ -262,7 +271,7 @@ class Panel {
     this.tell(document);
   }
 
-  /** Sends the editor's text to the page, which takes it over. */
+  /** Sends the editor's text to the page, where it replaces the copy. */
   tell(document) {
     this.sent++;
     this.post("panel/text", { text: normal(document.getText()) });
@@ -274,17 +283,17 @@ class Panel {
     this.post("panel/cursor", { position: selections[0].active });
   }
 
-  /** Makes the editor's text the given one. */
+  /** Changes the editor's text to `copy`. */
   async write({ copy, drag, isLast }) {
     const document = await this.reopened();
     if (document === undefined || this.sent > 0) return;
     const { editor } = this;
-    // Only an editor can join changes to one step for Undo. If there is none, the whole drag is
-    // written when it ends.
+    // Only a visible editor can join changes to one step for Undo. Without it, the result of a drag
+    // is written when the drag ends.
     if (editor === undefined && !isLast) return;
     const before = normal(document.getText());
     const edits = differences(before, copy);
-    // A step is ended by an edit, even if the text is complete by then.
+    // Only an edit can end a step for Undo. If nothing is left to change, an empty edit is made.
     if (edits.length === 0 && drag.hasWritten && isLast) edits.push({ line: 0, from: 0, lastLine: 0, to: 0, text: "" });
     if (edits.length === 0) return;
     const undo = { undoStopBefore: !drag.hasWritten, undoStopAfter: isLast };
@@ -307,8 +316,8 @@ class Panel {
     editor.revealRange(new vscode.Range(start, end), vscode.TextEditorRevealType.InCenterIfOutsideViewport);
   }
 
-  /** Runs a command of the editor, which acts on the editor that has the focus. Keys that are typed
-   * for the picture meanwhile are not written into the text. */
+  /** Runs a command that acts on the focused editor, so the scene's editor gets the focus for this
+   * time. Keys that the user types meanwhile are meant for the picture, and are ignored. */
   async inEditor(command) {
     const ignored = ignoreKeys();
     try {
@@ -325,8 +334,8 @@ class Panel {
   async save() { await this.document?.save(); }
 }
 
-/** Ignores what is typed until the result is disposed of. Returns undefined if another extension
- * handles typed keys. */
+/** Ignores typed keys until the returned object is disposed of. Returns undefined if another
+ * extension handles typed keys. */
 function ignoreKeys() {
   try {
     return vscode.commands.registerCommand("type", () => {});
@@ -342,8 +351,9 @@ async function apply(document, edits) {
 }
 
 /**
- * Returns the page for a panel. Its policy allows the page's own files and nothing from elsewhere.
- * The keys of commands that VS Code has itself are left to it.
+ * Returns the page's HTML for a panel. The content security policy allows only the page's own
+ * files. The keys in the page's header are removed, because VS Code has commands of its own for
+ * them.
  */
 function html(webview, folder) {
   const nonce = randomBytes(16).toString("base64");

@@ -1,15 +1,16 @@
 // The TextMate grammar of scene files. `npm run grammar` writes it to pinhole.tmLanguage.json.
 //
-// Every word gets the scope that corresponds to the type of its semantic token from the language
-// server (table `scopes`, which package.json repeats for themes), so that a file looks the same
-// before and after the server answers. The meaning of a name depends on the words before it: in
-// `radius r - 1 color sun`, `color` starts a field, and `sun` is a value. A TextMate rule that has
-// ended cannot pass information to its parent. So the rules do not end: the rest of a block is read
-// within the rule of the last value, and all rules end together at the closing brace.
+// The language server gives each word a semantic token. This grammar gives the word the scope that
+// `scopes` lists for the token's type, so that a file looks the same before and after the server
+// answers. (package.json repeats the table for themes.) The meaning of a name depends on the words
+// before it: in `radius r - 1 color sun`, `color` starts a field, and `sun` is a value. A TextMate
+// rule that has ended cannot pass information to its parent. Therefore, the rules do not end: the
+// rest of a block is read within the rule of the last value, and all rules end together at the
+// closing brace.
 
 import { writeFileSync } from "node:fs";
 
-/** Scopes by type of semantic token, or type with modifier. */
+/** Scopes by the type of the semantic token, or by its type and modifier. */
 export const scopes = {
   keyword: "keyword.control.pinhole",
   property: "support.type.property-name.pinhole",
@@ -49,10 +50,10 @@ const NUMBER =
 const ODD_NUMBER = "\\.?[0-9][A-Za-z0-9_.]*";
 const COLOR_CODE = "#[A-Za-z0-9_]*";
 const WORD_OF_THE_LANGUAGE = `(?:(?i:${colors.join("|")})|pi|deg|rad)\\b`;
-// `tan` is also a colour.
+// `tan` is also a colour; it is a function only before a parenthesis.
 const FUNCTION = `(?:${functions.map(name => (name === "tan" ? "tan(?=\\s*\\()" : name)).join("|")})\\b`;
 const QUOTED = "\"[^\"]*\"?|'[^']*'?";
-// The operators include some that the language lacks but that people use by mistake.
+// Operators, including some that the language does not have. People use them by mistake.
 const OPERATOR = "\\*\\*|[-+*/^%×·÷−]";
 
 // A line that starts with the head of a block ends the block above it, whose closing brace may be
@@ -72,7 +73,7 @@ const rule = (begin, types, end, ...names) => ({
   patterns: includes(...names),
 });
 
-/** Rules for the words of values, where no field can follow. */
+/** Rules for words of values after which no field can begin, such as those in parentheses. */
 const WORDS = [
   scoped(`(?<![A-Za-z0-9_.])${NUMBER}`, "number"),
   scoped(COLOR_CODE, "number"),
@@ -83,7 +84,7 @@ const WORDS = [
   scoped(OPERATOR, "operator"),
 ];
 
-/** Returns the rules of values that are followed by the rules `next`: fields, or items. */
+/** Returns the rules of values after which the rules `next` apply, such as the rule of a field. */
 function values(prefix, ...next) {
   const [value, operation] = [`${prefix}-value`, `${prefix}-operation`];
   const goesOn = ["comment", "parentheses", operation, ...next];

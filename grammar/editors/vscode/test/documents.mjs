@@ -1,12 +1,13 @@
-// Documents and text editors of the substitute for VS Code, with the same steps for Undo.
+// Documents and text editors of the substitute for VS Code. They join edits to steps for Undo as VS
+// Code does.
 
-/** A text document, which tells its editor of each change. */
+/** A text document. It reports each change by calling `tell`. */
 export class Document {
   version = 1;
   isDirty = false;
   isClosed = false;
   languageId = "pinhole";
-  /** Texts that Undo restores, the newest last. */
+  /** Texts that Undo restores, from the oldest to the newest. */
   steps = [];
   saves = 0;
   isInStep = false;
@@ -53,7 +54,7 @@ export class Document {
     this.change(edits);
   }
 
-  /** Replaces the last text `old` by `text`, as a user who types it. */
+  /** Replaces the last occurrence of `old` by `text`, as if a user typed it. */
   type(old, text) {
     const at = this.text.lastIndexOf(old);
     if (at < 0) throw new Error(`${old} is not in the text`);
@@ -80,8 +81,8 @@ export class Document {
   }
 }
 
-/** An editor that shows a document. Its edits arrive late, and fail if the text has changed by
- * then. */
+/** An editor that shows a document. As in VS Code, its edits are applied a little later. They fail
+ * if the text has changed before. */
 export class TextEditor {
   selection;
   revealed = [];

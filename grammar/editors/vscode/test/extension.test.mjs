@@ -19,7 +19,7 @@ let folder;
 beforeEach(() => { folder = mkdtempSync(path.join(tmpdir(), "pinhole-extension-")); });
 afterEach(() => rmSync(folder, { recursive: true }));
 
-/** Makes a document of the editor: a scene in the test's folder. */
+/** Makes a document of the editor from a scene, which is written to the test's folder. */
 function scene(text) {
   const file = path.join(folder, "a.scn");
   writeFileSync(file, text);
@@ -29,7 +29,7 @@ function scene(text) {
 /** Returns the absolute path of the program. */
 const whole = () => (program.includes("/") ? path.resolve(program) : findBinary("", undefined));
 
-/** Starts the extension in an editor with these options, until the test is over. */
+/** Starts the extension in an editor with these options. It is stopped when the test ends. */
 async function started(t, options) {
   const { vscode, seen } = editor(options);
   const extension = load(vscode);
@@ -41,7 +41,8 @@ async function started(t, options) {
 
 const timeout = 20_000;
 
-/** Waits for the effects of the answer to a message, which the extension does not await. */
+/** Waits until the extension has reacted to the user's answer to a message, for which it does not
+ * wait itself. */
 const settled = () => new Promise(resolve => setTimeout(resolve, 50));
 
 test("a scene that is open gets its diagnostics and every answer has a provider", { timeout }, async t => {

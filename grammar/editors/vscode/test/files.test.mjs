@@ -1,4 +1,4 @@
-// Tests the files for other editors: those for Neovim by running it, the rest by parsing them.
+// Tests the files for other editors. Neovim is run with its files; the other files are parsed.
 
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
@@ -31,7 +31,8 @@ const neovim = process.env.NVIM ?? "nvim";
 const skip = spawnSync(neovim, ["--version"]).status === 0 ? false : "Neovim is not installed";
 
 /**
- * Returns what a script prints in a headless Neovim with an open file, the plugin and the program.
+ * Returns what a script prints in a headless Neovim that has opened `source`, with the plugin and
+ * the program.
  */
 function inNeovim(source, script) {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-neovim-"));

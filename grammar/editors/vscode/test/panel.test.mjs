@@ -1,6 +1,6 @@
-// Tests the panel with the picture by messages: the test speaks for the page, the substitute for VS
-// Code for the editor, and the server is the real one. studio/page/test/panel.test.mjs tests it
-// with the real page.
+// Tests the messages of the panel with the picture. The test itself acts as the panel's page. VS
+// Code is replaced by a substitute, and the server is the real one. The tests of the panel with the
+// real page are in studio/page/test/panel.test.mjs.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -29,7 +29,7 @@ const memory = () => {
   return { get: key => kept.get(key), update: (key, value) => kept.set(key, value) };
 };
 
-/** Starts the extension with scenes, of which the first is shown. */
+/** Starts the extension in an editor with the scenes `texts`, the first of which is shown. */
 async function started(t, texts = { a: SCENE }, workspaceState = memory(), server = setting) {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-panel-"));
   const documents = Object.entries(texts).map(([name, text]) => new Document(Uri.file(path.join(folder, `${name}.scn`)), text));
@@ -43,8 +43,8 @@ async function started(t, texts = { a: SCENE }, workspaceState = memory(), serve
   return { vscode, seen, documents, extension, run: name => seen.commands.get(name)() };
 }
 
-/** Makes a server that keeps what it is sent. Returns its path, and a function that returns what
- * was sent. */
+/** Makes a server that records all bytes that it receives. Returns its path, and a function that
+ * returns these bytes as a text. */
 function recorded(t) {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-server-"));
   t.after(() => rmSync(folder, { recursive: true }));
@@ -53,7 +53,7 @@ function recorded(t) {
   return [server, () => readFileSync(sent, "utf8")];
 }
 
-/** Speaks for the page of a panel. */
+/** Sends and receives messages as the page of a panel does. */
 class Page {
   ids = 0;
   version = 0;
@@ -70,7 +70,7 @@ class Page {
     return until(() => this.told.find(it => it?.id === id));
   }
 
-  /** Begins a conversation, and takes over the editor's text. */
+  /** Begins a conversation, and opens the editor's text as the page's copy. */
   async begin() {
     this.panel.page.told.length = 0;
     this.panel.page.say("waiting");
@@ -127,7 +127,7 @@ test("the page gets the unsaved text, and pictures of its copy", { timeout }, as
   page.change(text);
   page.say({ method: "panel/followed", params: {} });
   assert.deepEqual((await page.frame()).result.size, [64, 18]);
-  // The page's copy is not a file of the editor, so that its mistakes are shown once.
+  // The editor shows the mistakes of its own text only, not those of the page's copy again.
   document.type("center", "centre");
   page.change(document.getText());
   await until(() => seen.diagnostics.get(document.uri.toString())?.length > 0);
@@ -146,7 +146,7 @@ test("only what the page needs is carried to the server", { timeout }, async t =
     const { error, result } = await page.ask(method, params);
     assert.deepEqual([error?.code, result], [-32601, undefined], method);
   }
-  // Texts of the editor cannot be changed at the server, nor messages of another form sent.
+  // The page cannot change the editor's texts at the server, and malformed messages are ignored.
   page.say({ method: "textDocument/didChange", params: { textDocument: { uri: document.uri.toString(), version: 9 }, contentChanges: [{ text: "of the page" }] } });
   page.say({ method: "exit", params: {} });
   for (const odd of [undefined, null, 7, "{", "null", "[]", { method: "exit" }]) page.panel.page.say(odd);
@@ -221,7 +221,7 @@ test("what is selected in the picture is selected in the text, and the reverse",
   const { start, end } = await until(() => shownEditor.selection);
   assert.equal(document.getText({ start, end }), "Ball");
   const moved = (kind, line) => seen.fire("selection", { textEditor: shownEditor, kind, selections: [{ active: { line, character: 3 } }] });
-  // A selection that is not the user's is not told.
+  // Only a selection by the user (its `kind` is defined) is reported to the page.
   moved(undefined, 1);
   moved(2, 2);
   assert.deepEqual((await page.hears("panel/cursor")).params.position, { line: 2, character: 3 });
@@ -234,17 +234,17 @@ test("the panel follows the active scene, by a page that is loaded anew", { time
   await vscode.window.showTextDocument(b, { viewColumn: 1 });
   assert.equal(panel.title, "Picture of b.scn");
   assert.equal(panel.page.html.length, 2);
-  // Answers to the page before do not reach this one.
+  // An answer to the previous page does not reach the new page.
   assert.equal(await page.begin(), b.getText());
   assert.deepEqual((await page.frame()).result.size, [40, 18]);
   assert.ok(!page.told.some(({ id }) => id === "late"));
-  // A document becomes a scene when its language is chosen.
+  // The panel also follows a document whose language the user has just set to Pinhole.
   const fresh = new Document(Uri.parse("untitled:Untitled-1"), SCENE.replace("32", "44"));
   vscode.window.activeTextEditor = { document: fresh, viewColumn: 1 };
   seen.fire("open", fresh);
   assert.equal(panel.title, "Picture of Untitled-1");
   assert.equal(panel.page.html.length, 3);
-  // Another editor, or none, leaves it as it is.
+  // If no editor is active, the panel still shows the last scene.
   vscode.window.activeTextEditor = undefined;
   page.say({ method: "panel/cursor", params: { position: { line: 2, character: 7 } } });
   assert.equal(panel.page.html.length, 3);
@@ -281,7 +281,8 @@ for (const isBusy of [false, true]) {
     const { document, page } = await shown(t);
     const [server] = execFileSync("pgrep", ["-P", String(process.pid), "-f", "lsp"], { encoding: "utf8" }).trim().split("\n").slice(-1);
     process.kill(Number(server), "SIGKILL");
-    // The editor's next messages fail before the client hears that the connection is closed.
+    // While the user types, messages to the crashed server fail before the client notices that the
+    // connection is closed.
     if (isBusy) for (let width = 32; width < 42; width++) document.type(`width ${width}`, `width ${width + 1}`);
     await until(() => page.told.some(it => it === "ended"));
     assert.equal(await page.begin(), document.getText());
@@ -302,7 +303,7 @@ test("a panel that was open is filled again after a reload of the window", { tim
   const page = new Page(panel);
   assert.equal(await page.begin(), SCENE);
   assert.ok((await page.frame()).result.png);
-  // A panel whose scene is gone is closed.
+  // A restored panel is closed if its scene's file no longer exists.
   const orphan = vscode.window.createWebviewPanel("pinhole.picture", "Picture of a.scn", {});
   panel.dispose();
   kept.update("pinhole.picture", "file:///gone.scn");

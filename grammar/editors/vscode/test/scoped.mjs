@@ -1,5 +1,5 @@
-// Splits a scene into words, each with the type that the TextMate grammar assigns, by VS Code's own
-// engine.
+// Splits a scene into words, each with the type that the TextMate grammar assigns to it. VS Code's
+// own engine applies the grammar.
 
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -32,8 +32,8 @@ function typeOfScopes(names) {
 }
 
 /**
- * Returns the words of a text, in order: `{ line, start, text, type }`, with columns in UTF-16.
- * Words without a type are left out.
+ * Returns the words of a text, in order, as `{ line, start, text, type }`. `start` is a column in
+ * UTF-16 code units. Words without a type are left out.
  */
 export function scoped(source) {
   const words = [];

@@ -9,15 +9,16 @@ import path from "node:path";
 const require = createRequire(import.meta.url);
 const { createProtocolConnection, StreamMessageReader, StreamMessageWriter } = require("vscode-languageserver-protocol/node");
 
-/** The program that PINHOLE names, or else the one on the path. */
+/** The program: the environment variable PINHOLE or, by default, `pinhole` on the path. */
 export const program = process.env.PINHOLE ?? "pinhole";
 
-// A test's server must not change the user's caches.
+// The server gets its own cache folder, so that tests do not change the user's caches.
 const caches = mkdtempSync(path.join(tmpdir(), "pinhole-caches-"));
 process.env.XDG_CACHE_HOME = caches;
 process.on("exit", () => rmSync(caches, { recursive: true, force: true }));
 
-/** Starts a server. Returns its capabilities, a function for requests, and others for a text. */
+/** Starts a server. Returns its capabilities, and functions that send requests, open a text, and
+ * stop the server. */
 export async function start() {
   const server = spawn(program, ["lsp"], { stdio: ["pipe", "pipe", "inherit"] });
   const exit = new Promise((resolve, reject) => server.on("error", reject).on("exit", resolve));
@@ -62,7 +63,8 @@ export async function start() {
 }
 
 /**
- * Returns the words of an open text with the server's types, in the form of `scoped`.
+ * Returns the words of an open text with the types of the server's semantic tokens, in the form of
+ * `scoped`.
  */
 export async function classified({ ask, capabilities }, uri, source) {
   const { tokenTypes, tokenModifiers } = capabilities.semanticTokensProvider.legend;

@@ -40,8 +40,8 @@ test("the grammar knows the colours and functions that the language knows", { ti
   };
   const [FUNCTION, COLOR] = [3, 16];
   assert.deepEqual((await offered(15, COLOR)).sort(), colors);
-  // Completion offers only functions of the wanted type: those of colours in place of colours, and
-  // so on.
+  // Completion offers only functions of the expected type, so it is asked for a colour and for a
+  // point.
   const found = new Set([...await offered(15, FUNCTION), ...await offered(23, FUNCTION)]);
   assert.deepEqual([...found].sort(), [...functions].sort());
 });

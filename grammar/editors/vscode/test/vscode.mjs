@@ -45,7 +45,8 @@ class Diagnostic {
 }
 
 /**
- * A namespace with these members; all others are functions that return something to dispose of.
+ * Returns a namespace with these members. Every other member is a function that returns a
+ * disposable object.
  */
 const partly = members => new Proxy(members, { get: (target, name) => (name in target ? target[name] : disposable) });
 
@@ -61,15 +62,15 @@ class TabInputText {
   constructor(uri) { this.uri = uri; }
 }
 
-/** An enumeration or class that only has to exist. */
+/** Returns a substitute for an enumeration or class whose members the tests do not use. */
 const anything = () => new Proxy(class {}, { get: (target, name) => (typeof name === "symbol" || name in target ? target[name] : 0) });
 
-/** Where a page finds the files that it may load. */
+/** Origin of the files that a page may load. */
 export const RESOURCES = "https://resources.test";
 
 /**
- * A panel for a page. The page's side is `page`: what it is told, `say` for its messages, and
- * `load`, which is called when the page is replaced.
+ * A panel for a page. Tests use `page`: `told` has the messages to the page, `say` sends a message
+ * of the page, and `load` is called when the page is replaced.
  */
 class WebviewPanel {
   page = { told: [], html: [], hear: message => this.page.told.push(message), say: message => this.receive(message), load() {} };
@@ -102,8 +103,9 @@ class WebviewPanel {
 }
 
 /**
- * Makes an editor with these documents, of which the first is shown. `setting` is the value of
- * `pinhole.path`; `answers` are the user's choices in messages, and `file` the choice in a dialog.
+ * Makes a substitute for VS Code with these documents, the first of which is shown. `setting` is
+ * the value of `pinhole.path`. `answers` are the buttons that the user chooses in messages, and
+ * `file` is the file that the user chooses in a dialog.
  */
 export function editor({ documents = [], setting = "", answers = [], file } = {}) {
   const listeners = {};
@@ -113,7 +115,7 @@ export function editor({ documents = [], setting = "", answers = [], file } = {}
     all.add(bound);
     return { dispose: () => all.delete(bound) };
   };
-  // VS Code only logs what a listener's promise is rejected with.
+  // If a listener's promise is rejected, VS Code only logs the error, so it is ignored here.
   const fire = (name, value) => listeners[name]?.forEach(listener => Promise.resolve(listener(value)).catch(() => {}));
   const seen = { panels: [], serializers: {}, fire, messages: [], executed: [], terminals: [], updates: [], languages: [], providers: {}, diagnostics: new Map(), commands: new Map() };
   const whole = documents.filter(it => it instanceof Document);
@@ -208,7 +210,7 @@ export function editor({ documents = [], setting = "", answers = [], file } = {}
   return { vscode, seen };
 }
 
-/** Loads the built extension into this editor. */
+/** Loads the built extension. It gets `vscode` as its module `vscode`. */
 export function load(vscode) {
   const require = createRequire(import.meta.url);
   const Module = require("node:module");
@@ -223,7 +225,7 @@ export function load(vscode) {
   }
 }
 
-/** Waits until `is` returns something, and returns it. */
+/** Calls `is` until it returns a true value, and returns this value. */
 export async function until(is) {
   for (let tries = 0; tries < 1200; tries++) {
     const found = await is();

@@ -13,8 +13,8 @@ impl Extension for Pinhole {
         Self
     }
 
-    /// Returns the path of the program from the settings (`lsp.pinhole.binary.path`), or else of
-    /// the one on the system's search path.
+    /// Returns the command that starts the language server. The program's path comes from the
+    /// setting `lsp.pinhole.binary.path`. Without this setting, the program is searched on PATH.
     fn language_server_command(
         &mut self,
         id: &LanguageServerId,
