@@ -34,7 +34,7 @@ type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void,
 const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
 /** Silence of the server, in ms, after which the page sends a test request. A shorter time would
  * cause more requests; a longer one would delay the notice that the server does not reply. */
-const QUIET = 700;
+const SILENCE = 700;
 const HANGING = 1200; // time after which a reply to a test request is late, in ms
 
 /** Prefix of the ids of the page's own requests. Answers with other ids are for the language
@@ -66,17 +66,17 @@ class Connection implements Transport {
    * ignored. */
   private current = 0;
   /** Time of the last message from the server, in ms since the page was loaded. */
-  private heard = 0;
+  private lastMessageTime = 0;
   /** Time at which the unanswered test request was sent, in ms since the page was loaded; 0 if no
    * test request is unanswered. */
-  private asked = 0;
+  private testSentTime = 0;
   private hangs = false;
 
   constructor(private readonly connector: Connector) {
     setInterval(() => this.listen(), 250);
     // Browsers stop the timers of hidden pages. When a page is hidden or shown, the age of an
     // unanswered test request therefore says nothing about the server, so the request is forgotten.
-    document.addEventListener("visibilitychange", () => (this.asked = 0));
+    document.addEventListener("visibilitychange", () => (this.testSentTime = 0));
   }
 
   /** Checks whether the server still replies. Sends a test request after a silence, and calls
@@ -84,11 +84,11 @@ class Connection implements Transport {
   private listen(): void {
     const now = performance.now();
     if (this.wire === null || document.hidden) return;
-    if (this.asked === 0) {
-      if (now - this.heard < QUIET) return;
-      this.asked = now;
+    if (this.testSentTime === 0) {
+      if (now - this.lastMessageTime < SILENCE) return;
+      this.testSentTime = now;
       void this.request("studio/alive", {}).catch(() => {});
-    } else if (now - this.asked > HANGING && !this.hangs) this.onHang((this.hangs = true));
+    } else if (now - this.testSentTime > HANGING && !this.hangs) this.onHang((this.hangs = true));
   }
 
   open(): void {
@@ -151,8 +151,8 @@ class Connection implements Transport {
     // The next attempts to reconnect begin with the shortest pause again. The count is reset at the
     // first message, not when the channel opens, because a failing server may accept connections.
     this.attempts = 0;
-    this.heard = performance.now();
-    this.asked = 0;
+    this.lastMessageTime = performance.now();
+    this.testSentTime = 0;
     if (this.hangs) this.onHang((this.hangs = false));
     const message = JSON.parse(text);
     if ("method" in message || !String(message.id).startsWith(OWN)) return this.handle(text);
@@ -164,7 +164,7 @@ class Connection implements Transport {
 
   private lose(why: Closed): void {
     this.wire = null;
-    this.asked = 0;
+    this.testSentTime = 0;
     this.hangs = false;
     const lost = new Error("The connection was lost.");
     for (const waiting of this.waiting.values()) waiting.reject(lost);

@@ -77,7 +77,7 @@ async function keepDraft(saved?: string): Promise<void> {
 }
 
 function newDraft(): Draft {
-  const { textToSave: text, at: { base, name } } = files;
+  const { textToSave: text, current: { base, name } } = files;
   return { id, name, text, base, time: Math.floor(Date.now() / 1000) };
 }
 
@@ -98,7 +98,7 @@ function show(): void {
   byId("draft-choices").replaceChildren(...offers.slice(0, OFFERED).map(draft => {
     const time = new Date(draft.time * 1000)
       .toLocaleString([], { dateStyle: "medium", timeStyle: "short" });
-    const other = isServed && files.isTold && draft.base !== files.at.seen
+    const other = isServed && files.hasHostFile && draft.base !== files.current.seen
       ? " The file holds something else; Save will ask." : "";
     const { length } = draft.text.split("\n");
     const row = create("li", "", `${draft.name}, of ${time}, ${length} lines.${other}`);
@@ -118,7 +118,7 @@ function answer(draft: Draft, isRestored: boolean): void {
     // Before the host has sent its state, the page does not know whether the host has stored this
     // draft, too. Therefore, the page now stores its own drafts under the key of this draft. They
     // replace the host's copy if there is one.
-    if (!files.isTold) id = draft.id;
+    if (!files.hasHostFile) id = draft.id;
     files.restore(draft.text, draft.base, draft.name);
   }
   void keepDraft();

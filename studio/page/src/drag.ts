@@ -28,7 +28,7 @@ export const CLICK = 4;
 const BROKEN = "The text has errors. Mend them, then the picture can be changed by hand.";
 const WAITING = "Waiting for Studio…";
 const SLOW = 400; // delay after which a note says that the answer is late, in ms
-const OTHERWISE = "The text was changed otherwise meanwhile, so the drag has ended.";
+const CHANGED_BY_OTHER = "The text was changed otherwise meanwhile, so the drag has ended.";
 
 // While a drag lasts, a note about it is shown beside the pointer.
 const note = byId("drag-note");
@@ -67,8 +67,8 @@ export class Drag {
   /** Promise that settles when the edit for the last point has been made. */
   private work: Promise<unknown>;
   private settle: () => void = () => {};
-  private letGo: () => void = () => {};
-  private readonly released = new Promise<void>(resolve => (this.letGo = resolve));
+  private release: () => void = () => {};
+  private readonly released = new Promise<void>(resolve => (this.release = resolve));
   private readonly done = new Promise<void>(resolve => (this.settle = resolve));
 
   /** Begins a drag at the point `press`. `hold` returns the dragged handle, or a promise of it if
@@ -100,7 +100,7 @@ export class Drag {
   /** Finishes the drag after the edit for the last point. Does not wait until the new picture is
    * rendered. */
   end(): void {
-    this.letGo();
+    this.release();
     void this.work.then(() => this.finish());
   }
 
@@ -131,7 +131,7 @@ export class Drag {
       if (this.over) return;
       if (answer === null) return this.say(BROKEN, "warning");
       if (!gesture.isAlone) {
-        this.say(OTHERWISE, "warning");
+        this.say(CHANGED_BY_OTHER, "warning");
         return this.finish();
       }
       gesture.write(editor.changes(answer.edits, base));

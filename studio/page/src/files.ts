@@ -56,10 +56,11 @@ class Scene {
 }
 
 /** Effect of a change that replaces one scene by another. Undo restores the first scene. */
-const turns = StateEffect.define<{ from: Scene; to: Scene }>();
+const sceneSwitch = StateEffect.define<{ from: Scene; to: Scene }>();
 
 export const sceneHistory: Extension = invertedEffects.of(({ effects }) => effects
-  .filter(it => it.is(turns)).map(({ value: { from, to } }) => turns.of({ from: to, to: from })));
+  .filter(it => it.is(sceneSwitch))
+  .map(({ value: { from, to } }) => sceneSwitch.of({ from: to, to: from })));
 
 /** Time after which an unfinished save is reported, in ms. A usual save takes less. */
 const SLOW = 800;
@@ -78,119 +79,123 @@ class Files {
   /** Closes the open lesson if its scene is shown. Then the user's own scene is shown again. */
   closeLesson: () => void = () => {};
   /** Whether the host has sent its scene to this page. */
-  isTold = false;
+  hasHostFile = false;
   /** Draft, or scene of a link, that was restored before the host sent its scene; null if there is
    * none. `base` is the content of the draft's file when editing began, or null if there was no
    * file. For a link, `base` is undefined. */
-  private early: { base: string | null | undefined; text: string } | null = null;
+  private restoredEarly: { base: string | null | undefined; text: string } | null = null;
   /** The scene of the host's file. */
-  private hosts = new Scene();
+  private hostScene = new Scene();
   /** The scene that the page shows. */
-  at = this.hosts;
+  current = this.hostScene;
   /** Newest state of the host's file, if it arrived while another scene was shown. */
-  private late: HostedFile | null = null;
+  private pendingHostFile: HostedFile | null = null;
   /** Scene, text and undo history that the scene of a lesson has replaced; null if no lesson's
    * scene is shown. */
-  private own: { scene: Scene; text: string; past: Extension } | null = null;
+  private beforeLesson: { scene: Scene; text: string; past: Extension } | null = null;
   private readonly conflict = byId<HTMLDialogElement>("conflict-dialog");
 
   constructor() {
     byId("save").addEventListener("click", () => void this.save());
     byId("save-as").addEventListener("click",
-      () => void this.save(new Scene(this.at.name, this.at)));
+      () => void this.save(new Scene(this.current.name, this.current)));
     byId("open").addEventListener("click", () => void this.attempt(() => this.open()));
     byId("file").addEventListener("change", ({ target }) => {
       const [file] = (target as HTMLInputElement).files ?? [];
       if (file !== undefined) void this.take(file, null);
       (target as HTMLInputElement).value = ""; // The same file can be chosen again.
     });
-    byId("new").addEventListener("click", () => this.begin(EMPTY));
+    byId("new").addEventListener("click", () => this.replaceBy(EMPTY));
     for (const [name, text] of EXAMPLES) byId("examples").append(
       createButton(name.replace(/(\d)_(\d)/, "$1.$2").replaceAll("_", " "), "",
         () => this.start(`${name}.scn`, text)));
     addEventListener("beforeunload", event => {
-      if (this.isUnsaved || this.own?.scene.isChangedBy(this.own.text)) event.preventDefault();
+      const { isUnsaved, beforeLesson } = this;
+      if (isUnsaved || beforeLesson?.scene.isChangedBy(beforeLesson.text)) event.preventDefault();
     });
   }
 
   /** Shows a new scene with this name and text. Undo restores the old scene. */
-  start(name: string, text: string): void { this.begin(text, new Scene(name)); }
+  start(name: string, text: string): void { this.replaceBy(text, new Scene(name)); }
 
   private startLink(text: string): void {
-    this.begin(text, Object.assign(new Scene(), { from: "link" }));
+    this.replaceBy(text, Object.assign(new Scene(), { from: "link" }));
   }
 
   /** Shows the scene of a lesson. Its initial text is `start`; `text` is what the user has made of
    * it so far. Undo does not leave the lesson: `leaveLesson` restores the user's own scene. */
   startLesson(name: string, start: string, text: string): void {
-    if (!this.isTold) return say("Studio is not ready yet.", "warning");
-    if (this.own === null) {
+    if (!this.hasHostFile) return say("Studio is not ready yet.", "warning");
+    if (this.beforeLesson === null) {
       this.onLeave();
-      this.own = { scene: this.at, text: editor.text, past: pastOf(editor.view) };
+      this.beforeLesson = { scene: this.current, text: editor.text, past: pastOf(editor.view) };
     }
-    this.at = Object.assign(new Scene(name), { untouched: start });
+    this.current = Object.assign(new Scene(name), { untouched: start });
     editor.open(text);
   }
 
   /** Shows the user's own scene again if the scene of a lesson has replaced it. */
   leaveLesson(): void {
-    if (this.own === null) return;
-    const { scene, text, past } = this.own;
-    this.own = null;
-    this.at = scene;
+    if (this.beforeLesson === null) return;
+    const { scene, text, past } = this.beforeLesson;
+    this.beforeLesson = null;
+    this.current = scene;
     editor.open(text, past);
     this.followHost();
   }
 
   /** Whether the scene of a lesson is shown. */
-  get isLesson(): boolean { return this.own !== null; }
+  get isLesson(): boolean { return this.beforeLesson !== null; }
 
   /** Handles a change of the host's file that arrived while another scene was shown. The change is
    * handled in a microtask, because now a transaction may be under way, or another scene may be
    * about to replace the host's scene again. */
   private followHost(): void {
-    queueMicrotask(() => { if (this.at === this.hosts && this.late) this.hosted(this.late); });
+    queueMicrotask(() => {
+      const { current, hostScene, pendingHostFile } = this;
+      if (current === hostScene && pendingHostFile) this.hosted(pendingHostFile);
+    });
   }
 
   /** Replaces the shown scene by the scene `to` with this text. Undo restores the old scene. If a
    * lesson's scene is shown, the user's own scene first replaces it, so Undo restores the own
    * scene. */
-  private begin(text: string, to = new Scene()): void {
-    if (!this.isTold) return say("Studio is not ready yet.", "warning");
+  private replaceBy(text: string, to = new Scene()): void {
+    if (!this.hasHostFile) return say("Studio is not ready yet.", "warning");
     this.closeLesson();
     this.onLeave();
     to.untouched = to.seen === null ? text : null;
     const { view } = editor;
     view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: withLf(text) },
       selection: { anchor: 0 }, scrollIntoView: true, annotations: isolateHistory.of("full"),
-      effects: turns.of({ from: this.at, to }) });
+      effects: sceneSwitch.of({ from: this.current, to }) });
   }
 
-  /** After Undo, Redo or the start of a new scene, sets `at` to the scene that the editor shows. If
-   * this scene was saved under another name, sets `at` to its newest copy. */
+  /** After Undo, Redo or the start of a new scene, sets `current` to the scene that the editor
+   * shows. If this scene was saved under another name, sets `current` to its newest copy. */
   follow(transactions: readonly Transaction[]): void {
     for (const { effects } of transactions) for (const it of effects) {
-      if (!it.is(turns)) continue;
-      for (let at: Scene | null = it.value.to; at; at = at.copy) this.at = at;
+      if (!it.is(sceneSwitch)) continue;
+      for (let at: Scene | null = it.value.to; at; at = at.copy) this.current = at;
       this.followHost();
     }
   }
 
-  private get shownName(): string { return visibleLine(this.at.name); }
+  private get shownName(): string { return visibleLine(this.current.name); }
 
-  get isUnsaved(): boolean { return editor.uri !== "" && this.at.isChangedBy(editor.text); }
+  get isUnsaved(): boolean { return editor.uri !== "" && this.current.isChangedBy(editor.text); }
 
   /** The text with the line ends that its file has. */
-  get textToSave(): string { return withEndsOf(this.at.held, editor.text); }
+  get textToSave(): string { return withEndsOf(this.current.held, editor.text); }
 
   /** Shows the text of a draft or of a link. For a link, `base` is undefined. */
-  restore(text: string, base?: string | null, name = this.at.name): void {
-    if (!this.isTold) {
-      this.early = { base, text };
+  restore(text: string, base?: string | null, name = this.current.name): void {
+    if (!this.hasHostFile) {
+      this.restoredEarly = { base, text };
       const untouched = base === undefined ? text : null;
-      Object.assign(this.at, { name, base: base ?? null, untouched });
+      Object.assign(this.current, { name, base: base ?? null, untouched });
     } else if (base === undefined) return this.startLink(text);
-    else if (this.at.seen !== null) this.at.base = base;
+    else if (this.current.seen !== null) this.current.base = base;
     editor.replace(text);
     editor.start();
     this.show();
@@ -200,21 +205,21 @@ class Files {
   hosted(file: HostedFile): void {
     const { name, text, reason, saved } = file;
     unsay(NOT_SAVED);
-    Object.assign(this.hosts, { name, isNew: isServed && !saved });
+    Object.assign(this.hostScene, { name, isNew: isServed && !saved });
     // While the page shows another scene, the text of the host's file must not replace that scene's
     // text. It is handled later.
-    this.late = this.at === this.hosts ? null : file;
-    if (this.late !== null) return this.show();
-    if (!this.isTold) {
+    this.pendingHostFile = this.current === this.hostScene ? null : file;
+    if (this.pendingHostFile !== null) return this.show();
+    if (!this.hasHostFile) {
       const [early, { view: { state: { selection } } }] = [editor.text, editor];
-      this.isTold = true;
-      this.at.seen = this.at.base = saved ? text : null;
+      this.hasHostFile = true;
+      this.current.seen = this.current.base = saved ? text : null;
       const start = saved ? (text ?? "") : isServed ? EMPTY : FIGURE;
-      this.at.untouched = saved ? null : start;
+      this.current.untouched = saved ? null : start;
       editor.open(start);
       this.tellLone();
-      if (this.early !== null) {
-        const { base, text } = this.early;
+      if (this.restoredEarly !== null) {
+        const { base, text } = this.restoredEarly;
         if (base === undefined) {
           // The scene of a link is not the host's file, so Save must not write to that file. Its
           // text remains in the page's address, so it is not lost if the user never saves it.
@@ -225,7 +230,7 @@ class Files {
       }
       if (saved && text === null) this.tellGone(reason);
     } else if (isServed && saved) {
-      this.at.untouched = null;
+      this.current.untouched = null;
       this.changed(text, reason);
     }
     editor.start();
@@ -234,8 +239,8 @@ class Files {
 
   /** Handles a change of the file by another program; `text` is null if it was removed. */
   private changed(text: string | null, reason?: string | null): void {
-    const { seen, isGone } = this.at;
-    this.at.isGone = text === null;
+    const { seen, isGone } = this.current;
+    this.current.isGone = text === null;
     if (text === null) {
       if (!isGone) this.tellGone(reason);
     } else if (text === seen) {
@@ -245,7 +250,7 @@ class Files {
       if (isGone) say(`${this.shownName} is there again.`);
     } else if (editor.text === withLf(text) || (seen !== null && editor.text === withLf(seen))) {
       this.conflict.close();
-      this.at.seen = this.at.base = text;
+      this.current.seen = this.current.base = text;
       editor.replace(text);
       say(`${this.shownName} was changed outside; the page follows.`);
       this.tellLone();
@@ -255,12 +260,12 @@ class Files {
 
   /** Warns of lone carriage returns, which the page cannot show. Save replaces them by LF. */
   private tellLone(): void {
-    if (LONE.test(this.at.held)) say(`${this.shownName} has carriage returns `
+    if (LONE.test(this.current.held)) say(`${this.shownName} has carriage returns `
       + "alone, which end no line in a scene; Save writes line feeds in their place.", "warning");
   }
 
   private tellGone(reason?: string | null): void {
-    this.at.isGone = true;
+    this.current.isGone = true;
     say(reason ? `${this.shownName} cannot be read: ${reason}`
       : `${this.shownName} is gone; Save writes it anew.`, "warning");
   }
@@ -274,7 +279,7 @@ class Files {
     if (document.title !== title) document.title = title;
   }
 
-  save(scene = this.at): Promise<void> {
+  save(scene = this.current): Promise<void> {
     return this.attempt(async () => {
       if (!isServed) await this.saveLocal(scene);
       else if (scene.isNew && connection.state === "open") this.askName(scene);
@@ -292,10 +297,10 @@ class Files {
 
   private async saveAs(scene: Scene, name: string): Promise<void> {
     if (connection.state !== "open") throw new Error(NOT_SAVED);
-    const { hosts, textToSave: text } = this;
+    const { hostScene, textToSave: text } = this;
     const { isGone, isNew, base } = scene;
-    const isHosts = scene === hosts && !isNew;
-    const isTaken = !isHosts && !hosts.isNew && name === hosts.name;
+    const isHosts = scene === hostScene && !isNew;
+    const isTaken = !isHosts && !hostScene.isNew && name === hostScene.name;
     if (isTaken) throw new Refusal(0, `${name} is there already; choose another name.`);
     const about = { text, base: isGone ? null : base, ...(isHosts ? {} : { name }) };
     const slow = setTimeout(
@@ -305,12 +310,13 @@ class Files {
       if (answer.ok) this.saved(scene, name, text);
       // The file was changed by another program. If the page shows another scene by now, the user
       // cannot choose between the page's and the file's text, so the save fails.
-      else if (this.at !== scene) throw new Refusal(0, `${name} is not saved: it was changed.`);
+      else if (this.current !== scene)
+        throw new Refusal(0, `${name} is not saved: it was changed.`);
       else if (answer.text === null) this.changed(null);
       else this.ask(answer.text);
     } catch (error) {
       // A restarted host does not know the files that it created before, so Save asks for a name.
-      scene.isNew ||= scene !== hosts && error instanceof Refusal && error.code !== 0;
+      scene.isNew ||= scene !== hostScene && error instanceof Refusal && error.code !== 0;
       throw error instanceof Refusal ? error : new Error(NOT_SAVED);
     } finally { clearTimeout(slow); }
   }
@@ -318,9 +324,9 @@ class Files {
   private saved(scene: Scene, name: string, text: string): void {
     scene.seen = scene.base = text;
     Object.assign(scene, { name, isGone: false, isNew: false, untouched: null });
-    if (scene.of === this.at) this.at = this.at.copy = scene;
+    if (scene.of === this.current) this.current = this.current.copy = scene;
     // If the host has no file yet, the saved scene becomes the host's.
-    if (this.hosts.isNew) [this.hosts, this.late] = [scene, null];
+    if (this.hostScene.isNew) [this.hostScene, this.pendingHostFile] = [scene, null];
     say(`${visibleLine(name)} is saved.`);
     this.onSaved(text);
   }
@@ -378,7 +384,7 @@ class Files {
       const scene = new Scene(file.name);
       scene.handle = handle;
       if (!isServed) scene.seen = scene.base = text;
-      this.begin(text, scene);
+      this.replaceBy(text, scene);
       this.tellLone();
     } catch { say(`${visibleLine(file.name)} is no text in UTF-8.`, "warning"); }
     this.show();
@@ -397,7 +403,7 @@ class Files {
       // If the user closes the dialog without a choice, `base` is not changed. It then differs from
       // the file, so the next save asks again.
       if (choice === "") return;
-      this.at.seen = this.at.base = theirs;
+      this.current.seen = this.current.base = theirs;
       if (choice === "page") void this.save();
       else editor.replace(theirs);
       this.show();

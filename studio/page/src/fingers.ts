@@ -10,7 +10,7 @@ const distance = (a: Point, b: Point) => Math.max(1, Math.hypot(a[0] - b[0], a[1
 
 export class Fingers {
   /** Cancels the action that the first pointer has begun, such as a drag. */
-  giveUp = (): void => {};
+  cancelFirst = (): void => {};
   /** Called with the movement, in screen pixels, of a pointer that is pressed alone. */
   onAlone: (by: Point, event: PointerEvent) => void = () => {};
   /** Last position of each pressed pointer, by its id. */
@@ -18,12 +18,12 @@ export class Fingers {
   /** Resolves to whether the pressed pointer acts alone. For a finger, this is known when it has
    * moved or been released, or when a second finger is pressed. */
   isAlone = Promise.resolve(true);
-  private decide: (isAlone: boolean) => void = () => {};
+  private resolveAlone: (isAlone: boolean) => void = () => {};
 
   /** Distance of the two fingers, in screen pixels, when the second one was pressed. */
-  private spread = 1;
+  private startDistance = 1;
   /** Total length of all movements since the last press, in screen pixels. */
-  private way = 0;
+  private moved = 0;
 
   /** `zoom` zooms by a factor, about a point of the stage. Its last argument is the product of all
    * factors since the second finger was pressed. `pan` shifts the picture by screen pixels. */
@@ -33,7 +33,7 @@ export class Fingers {
     const { stage } = picture;
     stage.addEventListener("pointermove", event => this.move(event));
     for (const end of ["pointerup", "pointercancel"] as const) stage.addEventListener(end,
-      ({ pointerId }) => this.decide(this.places.delete(pointerId) && end === "pointerup"));
+      ({ pointerId }) => this.resolveAlone(this.places.delete(pointerId) && end === "pointerup"));
     stage.addEventListener("contextmenu", event => event.preventDefault());
   }
 
@@ -44,13 +44,13 @@ export class Fingers {
     const at = picture.local(event);
     const [first] = places.values();
     places.set(event.pointerId, at);
-    [this.spread, this.way] = [distance(at, first ?? at), 0];
-    if (!first) this.isAlone = new Promise(resolve => (this.decide = resolve));
-    if (first || event.pointerType !== "touch") this.decide(!first);
+    [this.startDistance, this.moved] = [distance(at, first ?? at), 0];
+    if (!first) this.isAlone = new Promise(resolve => (this.resolveAlone = resolve));
+    if (first || event.pointerType !== "touch") this.resolveAlone(!first);
     stage.setPointerCapture(event.pointerId);
     stage.focus({ preventScroll: true }); // touch would leave the focus in the text
     endKeys();
-    if (first) this.giveUp();
+    if (first) this.cancelFirst();
     return !first;
   }
 
@@ -62,15 +62,15 @@ export class Fingers {
     places.set(event.pointerId, at);
     const other = [...places].find(([id]) => id !== event.pointerId)?.[1];
     const by: Point = [at[0] - before[0], at[1] - before[1]];
-    this.way += Math.hypot(...by);
-    if (this.way > CLICK) this.decide(true);
+    this.moved += Math.hypot(...by);
+    if (this.moved > CLICK) this.resolveAlone(true);
     if (other === undefined) return this.onAlone(by, event);
     // The browser reports the movements of the two fingers one after the other. Each movement zooms
     // the picture about the middle between the fingers, and shifts it by half the movement. If both
     // fingers move in the same direction, the two zooms cancel each other.
     const middle: Point = [(before[0] + other[0]) / 2, (before[1] + other[1]) / 2];
     const now = distance(at, other);
-    this.zoom(now / distance(before, other), middle, now / this.spread);
+    this.zoom(now / distance(before, other), middle, now / this.startDistance);
     this.pan([by[0] / 2, by[1] / 2]);
   }
 }

@@ -25,7 +25,7 @@ const COARSE_PIXELS = 320 * 180;
 
 /** Maximum size of a picture: its number of pixels, and the length of each side. All browsers can
  * show pictures of this size; a larger picture is requested at a lower resolution. */
-export const MOST = { pixels: 16_000_000, side: 8192 };
+export const LARGEST = { pixels: 16_000_000, side: 8192 };
 /** Pause in a drag, in ms, before finer pictures are requested. A moving pointer changes the text
  * once per refresh of the screen (17 ms at 60 Hz). With a shorter pause, finer pictures would be
  * requested in the middle of a movement. */
@@ -61,8 +61,8 @@ export class Frames {
 
   private generation = 0;
   /** Whether the server's newest answer about a text said that the text has errors. */
-  private isBroken = false;
-  private lastTook = Infinity;
+  private hasErrors = false;
+  private lastFinalTime = Infinity;
 
   /** Ends the drag `dragged`, unless another drag has begun since. */
   released(dragged: object): void {
@@ -90,15 +90,15 @@ export class Frames {
     if (frames.dragging !== null) await new Promise(resolve => setTimeout(resolve, HAND_RESTS));
     if (asked.generation !== this.generation) return;
     const isSharper = frame.width < frame.size[0];
-    if (isSharper && this.lastTook > SOON
+    if (isSharper && this.lastFinalTime > SOON
       && !(await this.present(asked, "sharp", this.ask({ samples: 1 })))) return;
     const begin = performance.now();
     const isNewest = await this.present(asked, "final", this.ask({}));
-    if (isNewest) this.lastTook = performance.now() - begin;
+    if (isNewest) this.lastFinalTime = performance.now() - begin;
   }
 
   private ask(how: { pixels?: number; samples?: number; last?: boolean }) {
-    return editor.request<Frame | null>("pinhole/frame", { ...MOST, ...this.more(), ...how });
+    return editor.request<Frame | null>("pinhole/frame", { ...LARGEST, ...this.more(), ...how });
   }
 
   /** Shows a requested picture when it arrives. Returns the picture. Returns null if the text has
@@ -108,8 +108,8 @@ export class Frames {
     const isNewest = () => asked.generation === this.generation;
     try {
       const frame = await answer;
-      const isFirst = fineness === "coarse" && !this.isBroken;
-      if (fineness === "coarse") this.isBroken = frame === null;
+      const isFirst = fineness === "coarse" && !this.hasErrors;
+      if (fineness === "coarse") this.hasErrors = frame === null;
       if (frame === null) {
         if (isNewest()) this.onState("broken");
         const before = { doc: null, generation: asked.generation - 1 };
@@ -132,7 +132,7 @@ export class Frames {
       this.onState("good");
       return frame;
     } catch (error) {
-      if (fineness === "coarse") this.isBroken = false;
+      if (fineness === "coarse") this.hasErrors = false;
       if (isNewest() && !isSuperseded(error) && connection.state === "open")
         this.onState(error as Error);
       return null;

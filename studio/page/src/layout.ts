@@ -17,17 +17,17 @@ const divider = byId("divider");
 const panes = byId("panes");
 const isNarrow = matchMedia("(max-width: 760px), (max-aspect-ratio: 1)");
 // The text's share of the page is stored separately for text beside the picture and text below it.
-const kept = () => isNarrow.matches ? { key: "text-below", usual: 30 }
+const storedShare = () => isNarrow.matches ? { key: "text-below", usual: 30 }
   : { key: "text-share", usual: 42 };
 const share = (percent: number) => {
   const bounded = Math.round(Math.min(MOST, Math.max(LEAST, percent)));
   panes.style.setProperty("--text-share", `${bounded}%`);
   divider.setAttribute("aria-valuenow", String(bounded));
-  remember(kept().key, String(bounded));
+  remember(storedShare().key, String(bounded));
 };
 const orient = () => {
   divider.setAttribute("aria-orientation", isNarrow.matches ? "horizontal" : "vertical");
-  share(Number(remembered(kept().key) ?? kept().usual));
+  share(Number(remembered(storedShare().key) ?? storedShare().usual));
 };
 isNarrow.addEventListener("change", orient);
 orient();

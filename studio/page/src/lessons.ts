@@ -35,7 +35,7 @@ const [back, on] = [byId<HTMLButtonElement>("lesson-back"), byId<HTMLButtonEleme
 let current: Lesson | null = null;
 let step = 0;
 /** Whether the host's lesson is about the user's own scene instead of the lesson's scene. */
-let isAboutOwn = false;
+let usesOwnScene = false;
 /** Whether the section shows the list of all lessons. */
 let isList = true;
 /** The engine's last answer about the current lesson; null if there is none yet. */
@@ -68,7 +68,7 @@ function plain(tokens: Token[]): string {
  * (`isNew`). Otherwise, the lesson is about the page's scene. */
 export function startLessons(own: LessonText | null | undefined, isNew: boolean): void {
   if (own != null) lessons[0] = read(own);
-  isAboutOwn = !isNew;
+  usesOwnScene = !isNew;
   if (inAddress(KEY) !== null) followAddress();
   else if (lessons[0]) open(lessons[0]);
 }
@@ -88,7 +88,7 @@ function open(lesson: Lesson): void {
   if (lesson !== current) {
     keepText();
     [current, step, judged] = [lesson, 0, null];
-    if ((isAboutOwn && lesson === lessons[0]) || inAddress("scene") !== null) files.leaveLesson();
+    if ((usesOwnScene && lesson === lessons[0]) || inAddress("scene") !== null) files.leaveLesson();
     else {
       files.startLesson(`${lesson.name}.scn`, lesson.start, texts.get(lesson) ?? lesson.start);
       overlays.hideLayers();
@@ -171,7 +171,7 @@ function show(): void {
   back.disabled = step === 0;
   const isLast = step === steps.length - 1;
   setText(on, isLast ? "Next lesson ▸" : "Next ▸");
-  on.disabled = isLast && following() === null;
+  on.disabled = isLast && nextNumber() === null;
   showConditions();
 }
 
@@ -196,12 +196,12 @@ export function lessonOnPaper(): HTMLElement[] {
 const isCheck = ({ type, raw }: Token): boolean =>
   type === "code" && /^(```+|~~~+)[ \t]*check[ \t]*(\n|$)/.test(raw);
 
-/** Returns the conditions in a block `check`, each in the form that `bare` returns. */
+/** Returns the conditions in a block `check`, each in the form that `normalized` returns. */
 const conditionsIn = (token: Token): string[] => (token as Tokens.Code).text.split("\n")
-  .map(line => line.trim()).filter(line => line !== "" && !line.startsWith("//")).map(bare);
+  .map(line => line.trim()).filter(line => line !== "" && !line.startsWith("//")).map(normalized);
 /** Removes white space and `//` from a line with a condition and its description in words. Then
  * the page's and the engine's forms of the line are equal. */
-const bare = (line: string) => line.replace(/\s|\/\//g, "");
+const normalized = (line: string) => line.replace(/\s|\/\//g, "");
 
 function list(): HTMLElement {
   const all = create("ol");
@@ -242,7 +242,7 @@ function fill(tokens: Token[], elements: Element[]): Condition[] {
     // Therefore, a block is found by its conditions, not by its number.
     const wanted = String(conditionsIn(token));
     const found = judged?.checks.find(block =>
-      String(block.map(it => bare(it.condition + it.words))) === wanted) ?? [];
+      String(block.map(it => normalized(it.condition + it.words))) === wanted) ?? [];
     elements[i]?.replaceChildren(...found.map(condition));
     return found;
   });
@@ -263,7 +263,7 @@ function condition(it: Condition): HTMLElement {
 
 /** Returns the number of the lesson after the current one. Returns null after the last lesson, and
  * for the host's lesson. */
-function following(): number | null {
+function nextNumber(): number | null {
   const number = lessons.indexOf(current);
   return number > 0 && number + 1 < lessons.length ? number + 1 : null;
 }
@@ -271,7 +271,7 @@ function following(): number | null {
 back.addEventListener("click", () => turn(-1));
 on.addEventListener("click", () => turn(1));
 function turn(by: number): void {
-  const next = following();
+  const next = nextNumber();
   if (step + by === current?.steps.length) return next === null ? undefined : choose(next);
   step += by;
   show();

@@ -58,11 +58,11 @@ frames.onShow = shown => {
   picture.show(shown);
 };
 frames.onState = state => {
-  if (state === "good") status.stale(null);
-  else if (state === "broken") status.stale(picture.isEmpty
+  if (state === "good") status.markOutdated(null);
+  else if (state === "broken") status.markOutdated(picture.isEmpty
     ? "The text has errors, so there is no picture yet."
     : "The text has errors. This is its last good picture.");
-  else status.stale(`No picture of the newest text: ${state.message}`);
+  else status.markOutdated(`No picture of the newest text: ${state.message}`);
 };
 frames.onRest = () => {
   rested();
@@ -75,7 +75,8 @@ function changed(): void {
   if (connection.state !== "open") {
     const hasText = editor.text !== "";
     status.connection(connection.state, hasText);
-    status.stale(!hasText || frames.shown?.doc?.eq(editor.view.state.doc) ? null : picture.isEmpty
+    const isUpToDate = !hasText || frames.shown?.doc?.eq(editor.view.state.doc);
+    status.markOutdated(isUpToDate ? null : picture.isEmpty
       ? "Without a connection there is no picture."
       : "Without a connection this is the picture of an older text.");
   }
@@ -122,7 +123,7 @@ connection.onState = state => {
   status.connection(state, false);
   if (state === "open") editor.connected();
   else editor.client.disconnect();
-  if (state !== "open" && !files.isTold) void offerDrafts();
+  if (state !== "open" && !files.hasHostFile) void offerDrafts();
   changed();
 };
 
@@ -162,7 +163,7 @@ let waiting: HostedFile | null = null;
 
 async function hosted(file: HostedFile): Promise<void> {
   await linked;
-  const first = !files.isTold;
+  const first = !files.hasHostFile;
   // If new content of the host's file arrives during a drag, it is handled when the drag ends. A
   // playing slider also sets `frames.dragging`, possibly for a long time. It is stopped, so that
   // the new content need not wait for it.
@@ -184,7 +185,7 @@ addEventListener("hashchange", async () => {
   }
   await openLink();
   overlays.showAddressed();
-  if (files.isTold) followAddress();
+  if (files.hasHostFile) followAddress();
 });
 byId("undo").addEventListener("click", () => undo(editor.view));
 byId("redo").addEventListener("click", () => redo(editor.view));
@@ -195,7 +196,7 @@ addEventListener("beforeprint", () => {
   byId("dock").classList.toggle("without-room", byId("dock").clientWidth === 0);
   place();
   // The editor creates elements only for visible lines, so printing needs a copy of the text.
-  setText(byId("print-text"), [`${files.at.name}, ${new Date().toLocaleString()}`,
+  setText(byId("print-text"), [`${files.current.name}, ${new Date().toLocaleString()}`,
     ...firstError(), "", editor.text].join("\n"));
   byId("print-lesson").replaceChildren(...lessonOnPaper());
 });

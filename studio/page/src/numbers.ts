@@ -49,7 +49,7 @@ export function written({ least, most, decimals }: Limits, value: number): strin
 }
 
 /** Changes a number within its limits, so that a single Undo reverts all the changes. */
-export class Turn {
+export class NumberEdit {
   readonly gesture = new Gesture(editor.view);
 
   constructor(private readonly literal: Literal, private readonly limits = limitsOf(literal.to)) {}
@@ -67,9 +67,9 @@ export class Turn {
 }
 
 /** Slider of a number in the text. One Undo reverts all changes until the slider is released. */
-export class Dial {
+export class NumberSlider {
   readonly range = create("input");
-  turn: Turn | null = null;
+  turn: NumberEdit | null = null;
   limits: Limits | null = null;
 
   constructor(readonly literal: () => Literal | null) {
@@ -92,7 +92,7 @@ export class Dial {
   async set(value: number): Promise<void> {
     const found = this.literal();
     const limits = this.limits === null ? undefined : Promise.resolve(this.limits);
-    if (found !== null) this.turn ??= new Turn(found, limits);
+    if (found !== null) this.turn ??= new NumberEdit(found, limits);
     frames.dragging ??= this;
     await this.turn?.set(() => value);
   }
@@ -144,7 +144,7 @@ async function open(at: number): Promise<void> {
 
 function createSlider(): TooltipView {
   const dom = create("div", "slider");
-  const dial = new Dial(() => literalAt((editor.view.state.field(sliderField) ?? 0) + 1));
+  const dial = new NumberSlider(() => literalAt((editor.view.state.field(sliderField) ?? 0) + 1));
   const { range, literal } = dial;
   const adapt = () => range.setAttribute("aria-label", `Value ${dial.show()?.value ?? ""}`);
   range.addEventListener("keydown", event => {
@@ -153,11 +153,11 @@ function createSlider(): TooltipView {
     show(null);
     editor.view.focus();
   });
-  const less = createButton("−", "", () => turnOnce(literal(), -1), "Less");
-  const more = createButton("+", "", () => turnOnce(literal(), 1), "More");
+  const less = createButton("−", "", () => stepOnce(literal(), -1), "Less");
+  const more = createButton("+", "", () => stepOnce(literal(), 1), "More");
   const grip = create("span", "grip", "↔ drag");
   grip.title = "Drag to the side; in the text, drag a number with the Alt key";
-  grip.addEventListener("pointerdown", event => scrub(event, literal()));
+  grip.addEventListener("pointerdown", event => dragNumber(event, literal()));
   dom.append(less, range, more, grip);
   const refresh = async () => {
     const found = literal();
@@ -172,10 +172,10 @@ function createSlider(): TooltipView {
 }
 
 /** Changes `literal` while the pointer moves sideways. Returns false if `literal` is null. */
-function scrub(event: PointerEvent, literal: Literal | null): boolean {
+function dragNumber(event: PointerEvent, literal: Literal | null): boolean {
   if (literal === null) return false;
   event.preventDefault();
-  const turn = new Turn(literal);
+  const turn = new NumberEdit(literal);
   document.body.classList.add("scrubbing");
   const move = (next: PointerEvent) => void turn.set(step =>
     literal.value + Math.round((next.clientX - event.clientX) / DRAG_PIXELS) * step);
@@ -188,9 +188,9 @@ function scrub(event: PointerEvent, literal: Literal | null): boolean {
 }
 
 /** Changes `literal` by one step up (1) or down (−1). Returns false if `literal` is null. */
-function turnOnce(literal: Literal | null, direction: number): boolean {
+function stepOnce(literal: Literal | null, direction: number): boolean {
   if (literal === null) return false;
-  const turn = new Turn(literal);
+  const turn = new NumberEdit(literal);
   void turn.set(step => literal.value + direction * step);
   turn.end();
   return true;
@@ -204,7 +204,7 @@ export const numberControls: Extension = [
     pointerdown(event, view) {
       if (!event.altKey || event.button !== 0) return false;
       const at = view.posAtCoords({ x: event.clientX, y: event.clientY });
-      return scrub(event, at === null ? null : literalAt(at));
+      return dragNumber(event, at === null ? null : literalAt(at));
     },
     // While the Alt key is held, a drag changes a number, so a press must not begin a selection.
     mousedown: event => event.altKey,
@@ -216,8 +216,8 @@ export const numberControls: Extension = [
   }),
   keymap.of([
     // If there is no number at the cursor, these keys keep their usual function.
-    { key: "Alt-ArrowUp", run: () => turnOnce(atCursor(), 1) },
-    { key: "Alt-ArrowDown", run: () => turnOnce(atCursor(), -1) },
+    { key: "Alt-ArrowUp", run: () => stepOnce(atCursor(), 1) },
+    { key: "Alt-ArrowDown", run: () => stepOnce(atCursor(), -1) },
     { key: "Alt-Enter", run: ({ dom }) => {
       const literal = atCursor();
       if (literal === null) return false;

@@ -57,7 +57,7 @@ export const refreshOutlines = newestOf<void>(async () => {
   const answer = await editor.ask<Overlays>("pinhole/overlays", about);
   // If the text has errors, the overlays belong to an older text, so no object can be selected or
   // dragged by its overlay.
-  overlays.isTrue = answer !== null;
+  overlays.isCurrent = answer !== null;
   if (answer !== null && editor.view.state.doc === doc) overlays.data = answer;
   overlays.draw();
   selection.draw();

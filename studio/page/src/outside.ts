@@ -9,7 +9,7 @@ import { Drag, dragWith, type Held } from "./drag";
 import { editor } from "./editor";
 import { files } from "./files";
 import { Fingers } from "./fingers";
-import { Frames, frames, MOST } from "./frames";
+import { Frames, frames, LARGEST } from "./frames";
 import { ARROWS, dragByKey, endKeys } from "./keys";
 import { drawLines, overlays } from "./overlays";
 import { Picture, picture as main } from "./picture";
@@ -76,20 +76,20 @@ class Outside {
   private data: Overlays | null = null;
   private isTrue = false;
   /** Whether the eye and the window have been in the picture since the user last moved the view. */
-  private isInView = false;
-  private pointed: Point | null = null;
+  private sawCamera = false;
+  private rayPoint: Point | null = null;
   /** Whether a new picture is needed, and not only new lines. */
   private needsFrame = false;
   /** Scene that the view shows. If the page shows another scene, the server chooses a new view. */
-  private scene = files.at;
+  private scene = files.current;
   private begin = 0;
   private took = 0;
   private readonly svg = document.querySelector("#outside-lines") as SVGElement;
   private readonly handles = byId("outside-handles");
   /** The view whose picture was requested last. Unlike `view`, it is not null while the server
    * chooses another view: a request without a view would be about the main picture. */
-  private framed: View | null = null;
-  private readonly frames = new Frames(() => ({ view: this.framed, samples: SAMPLES }));
+  private requestedView: View | null = null;
+  private readonly frames = new Frames(() => ({ view: this.requestedView, samples: SAMPLES }));
   private readonly box = byId<HTMLInputElement>("outside-shown");
   private readonly fingers = new Fingers(this.picture, factor => this.zoom(1 / factor),
     by => this.pan(by));
@@ -135,7 +135,7 @@ class Outside {
   }
 
   /** The view, as a part of the page's address; empty if the user has not chosen it. */
-  get inLink(): string {
+  get linkFragment(): string {
     if (this.view === null || !this.isChosen || !this.isShown) return "";
     const numbers = [...this.view.eye, ...this.view.lookat];
     return `&view=${numbers.map(it => Number(it.toPrecision(6))).join(",")}`;
@@ -166,8 +166,8 @@ class Outside {
 
   /** Draws the ray through the point `at` of the main picture. If `at` is null, draws no ray. */
   point(at: Point | null): void {
-    if (String(at) === String(this.pointed)) return;
-    this.pointed = at;
+    if (String(at) === String(this.rayPoint)) return;
+    this.rayPoint = at;
     void this.refresh();
   }
 
@@ -185,19 +185,19 @@ class Outside {
   readonly refresh = newestOf<void>(async () => {
     for (let its; its !== frames.coarse; await its) its = frames.coarse;
     if (connection.state !== "open" || !this.isShown || editor.uri === "") return;
-    if (files.at !== this.scene && files.at.of !== this.scene) {
+    if (files.current !== this.scene && files.current.of !== this.scene) {
       this.view = null;
       this.from = undefined;
       this.isChosen = false;
-      if (files.at.from === "link") this.openAddressed();
+      if (files.current.from === "link") this.openAddressed();
     }
-    this.scene = files.at;
+    this.scene = files.current;
     const { doc } = editor.view.state;
     const { size } = this;
     const asked = this.view && (this.view = { ...this.view, size });
     const only = [selection.index, overlays.hovered].filter(it => it !== null);
     const answer = await editor.ask<Overlays>("pinhole/overlays", { only,
-      point: this.pointed, view: asked ?? { from: this.from, size } });
+      point: this.rayPoint, view: asked ?? { from: this.from, size } });
     this.isTrue = answer !== null;
     if (answer !== null && editor.view.state.doc === doc) {
       this.data = answer;
@@ -207,9 +207,9 @@ class Outside {
       // If a change of the text has moved the scene's camera out of the picture, the server chooses
       // the view again, but not during a drag, which a new view would disturb. If the user has
       // chosen the view, its direction is kept.
-      if (this.seesCamera) this.isInView = true;
-      else if (this.isInView && this.view !== null && frames.dragging === null) {
-        this.isInView = false;
+      if (this.seesCamera) this.sawCamera = true;
+      else if (this.sawCamera && this.view !== null && frames.dragging === null) {
+        this.sawCamera = false;
         if (this.isChosen) this.from = minus(this.view.eye, this.view.lookat);
         this.view = null;
         return this.changed();
@@ -221,7 +221,7 @@ class Outside {
     const isLate = frames.dragging !== null && this.took > LATE;
     if (!this.needsFrame || this.view === null || isLate) return;
     this.needsFrame = false;
-    this.framed = this.view;
+    this.requestedView = this.view;
     this.begin = performance.now();
     this.frames.changed();
   });
@@ -286,7 +286,7 @@ class Outside {
     const view = this.view && { ...this.view, size: [width, height] };
     const data = view && await editor.request<Overlays | null>("pinhole/overlays",
       { only: null, point: null, view });
-    const frame = view && await editor.request<Frame | null>("pinhole/frame", { ...MOST,
+    const frame = view && await editor.request<Frame | null>("pinhole/frame", { ...LARGEST,
       view: { ...view, size: [SHARPEST * width, SHARPEST * height] }, samples: SAMPLES });
     if (!data || !frame) throw new Error("The text has errors: it has no view from outside.");
     const whole = createSvg("svg", { width, height, viewBox: `0 0 ${width} ${height}` });
@@ -331,7 +331,7 @@ class Outside {
     const at = picture.toPicture(picture.local(event));
     const held = this.held(event.target as Element);
     if (held !== null && event.button === 0) {
-      fingers.giveUp = dragWith(event, at, () => held, this);
+      fingers.cancelFirst = dragWith(event, at, () => held, this);
       return;
     }
     // The left button drags an object if the pointer is over one, and turns the view otherwise.
@@ -346,7 +346,7 @@ class Outside {
       return found;
     };
     const cancel = isObject === null ? dragWith(event, at, hold, this) : () => {};
-    const before = { view: this.view, isChosen: this.isChosen, isInView: this.isInView };
+    const before = { view: this.view, isChosen: this.isChosen, isInView: this.sawCamera };
     let last: Point = [event.clientX, event.clientY];
     const move = ({ clientX, clientY, shiftKey }: PointerEvent) => {
       if (isObject !== false) return;
@@ -355,7 +355,7 @@ class Outside {
       if (event.button === 1 || shiftKey) this.pan(by);
       else this.turn([by[0] / stage.clientHeight, by[1] / stage.clientHeight]);
     };
-    fingers.giveUp = followPointer(event, move, () => {}, () => {
+    fingers.cancelFirst = followPointer(event, move, () => {}, () => {
       cancel();
       Object.assign(this, before);
       this.changed();
@@ -384,7 +384,7 @@ class Outside {
     if (this.view === null || ![...eye, ...lookat].every(Number.isFinite)) return;
     this.view = { ...this.view, eye, lookat };
     this.isChosen = true;
-    this.isInView = false;
+    this.sawCamera = false;
     this.changed();
   }
 

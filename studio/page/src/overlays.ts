@@ -19,7 +19,7 @@ class OverlayLayer {
    * it sends none. */
   data: Overlays | null = null;
   /** Whether `data` belongs to the current text. */
-  isTrue = true;
+  isCurrent = true;
   hovered: number | null = null;
   /** Called when `data` may lack overlays that must be drawn: when a layer is switched on, or when
    * the pointer reaches an object without overlays. */
@@ -99,7 +99,7 @@ class OverlayLayer {
     const vanishing = this.isOn("vanishing") ? data.vanishing : [];
     for (const { axis, lines } of vanishing) path(`axis-${axis}`, lines);
     if (this.isOn("outlines")) for (const { outline } of data.objects) path("outline", outline);
-    for (const name of this.isTrue ? ["hovered", "selected"] as const : []) {
+    for (const name of this.isCurrent ? ["hovered", "selected"] as const : []) {
       path(`outline ${name}`, data.objects.find(it => it.index === this[name])?.outline ?? []);
     }
     for (const { axis, point } of vanishing) if (point) this.mark(point, `axis-${axis}`, axis);

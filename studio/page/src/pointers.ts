@@ -35,7 +35,7 @@ function press(event: PointerEvent): void {
   const held = button === null ? null : selection.held(button);
   const isOfHandle = held !== null && event.button === 0;
   const take = async () => await fingers.isAlone ? grab(start) : null;
-  fingers.giveUp = dragWith(event, start, isOfHandle ? () => held : tool === "move" ? take
+  fingers.cancelFirst = dragWith(event, start, isOfHandle ? () => held : tool === "move" ? take
     : () => ({ object: null, handle: tool, at: start }));
 }
 
@@ -43,12 +43,12 @@ function press(event: PointerEvent): void {
  * object, if its centre is not visible in the picture, or if `isMeant` is false for it. */
 export async function grab(point: Point, view: Surface["view"] = null,
   isMeant: (object: SceneObject | null) => boolean = () => true): Promise<Held | null> {
-  const { choices } = selection;
+  const { selectionCount: choices } = selection;
   const pick = await editor.ask<Pick>("pinhole/pick", { point, view });
   const object = pick?.object ?? null;
   if (!isMeant(object)) return null;
   // If the user selects something else before the server answers, that selection stays.
-  if (choices === selection.choices) selection.select(object);
+  if (choices === selection.selectionCount) selection.select(object);
   if (object === null) return null;
   const only = [object.index];
   const overlays = await editor.ask<Overlays>("pinhole/overlays", { only, view });

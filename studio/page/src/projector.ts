@@ -29,7 +29,8 @@ let channel = join();
 
 function join(): BroadcastChannel {
   const joined = new BroadcastChannel(`pinhole-${name}`);
-  joined.onmessage = ({ data }: MessageEvent<Message>) => (isProjector ? project : feed)(data);
+  const handle = isProjector ? handleInWindow : handleInTab;
+  joined.onmessage = ({ data }: MessageEvent<Message>) => handle(data);
   return joined;
 }
 
@@ -38,12 +39,12 @@ const send = (kind: Kind, shown?: Shown) => channel.postMessage({ kind, from: ow
 /** Sends a picture to the projector windows, if there are any. */
 export function feedProjectors(shown: Shown): void { if (windows.size > 0) send("picture", shown); }
 
-function project({ kind, shown }: Message): void {
+function handleInWindow({ kind, shown }: Message): void {
   if (shown) picture.show(shown);
   if (kind === "there") send("ready");
 }
 
-async function feed({ kind, from }: Message): Promise<void> {
+async function handleInTab({ kind, from }: Message): Promise<void> {
   if (kind === "gone") windows.delete(from);
   if (kind === "there") send("taken");
   if (kind === "taken") {

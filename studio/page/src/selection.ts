@@ -15,9 +15,9 @@ import { setText } from "./visible";
 
 /** Offsets from a handle's point, in screen pixels, the nearest first. A handle that would overlap
  * another one is moved by the first offset that avoids the overlap. */
-const ASIDE: Point[] = [];
-for (let x = -60; x <= 60; x += 6) for (let y = -60; y <= 60; y += 6) ASIDE.push([x, y]);
-ASIDE.sort((a, b) => Math.hypot(...a) - Math.hypot(...b));
+const OFFSETS: Point[] = [];
+for (let x = -60; x <= 60; x += 6) for (let y = -60; y <= 60; y += 6) OFFSETS.push([x, y]);
+OFFSETS.sort((a, b) => Math.hypot(...a) - Math.hypot(...b));
 
 /** An object with its block's range in the text, which follows changes of the text. */
 interface Placed { object: SceneObject; from: number; to: number }
@@ -28,7 +28,7 @@ class Selection {
   onChange: () => void = () => {};
   /** Number of selections made so far. If it has grown when the server answers, the user has
    * selected something else in the meantime. */
-  choices = 0;
+  selectionCount = 0;
   private placed: Placed[] = [];
   /** Object that the user has chosen; null if the user chose to select nothing; undefined before
    * any choice. It is stored because a loop may create several objects from one block, and the
@@ -70,14 +70,14 @@ class Selection {
 
   /** Selects the object into whose block the cursor was moved. */
   cursorMoved(): void {
-    this.choices++;
+    this.selectionCount++;
     if (this.chosen === null) this.chosen = undefined;
     this.follow(true);
   }
 
   /** Selects an object and scrolls to its block. If `object` is null, selects nothing. */
   select(object: SceneObject | null): void {
-    this.choices++;
+    this.selectionCount++;
     this.chosen = object;
     if (object === null) return this.follow();
     // The server lists only a limited number of objects. If this one is not listed, it is added
@@ -134,7 +134,7 @@ class Selection {
   /** Outline and handles of the selected object; undefined if they are not known for the current
    * text. */
   get drawn(): DrawnObject | undefined {
-    const { data, isTrue } = overlays;
+    const { data, isCurrent: isTrue } = overlays;
     const { line } = editor.position(this.selected?.from ?? 0);
     // The line is compared as well as the index: until the objects of a new text are listed, the
     // index may belong to another object.
@@ -187,7 +187,7 @@ export function placeHandles(parent: HTMLElement, where: Picture,
   const least = 1 + ((parent.firstElementChild as HTMLElement | null)?.offsetWidth ?? 0);
   const taken: Point[] = [];
   shown.forEach(({ at, label, owner }, i) => {
-    const [x, y] = apart(where.toScreen(at as Point), taken, least, where.stage);
+    const [x, y] = freePosition(where.toScreen(at as Point), taken, least, where.stage);
     taken.push([x, y]);
     const button = parent.children[i] as HTMLElement;
     button.setAttribute("aria-label", `${owner}: ${label}`);
@@ -198,12 +198,13 @@ export function placeHandles(parent: HTMLElement, where: Picture,
 
 /** Returns a position near a handle's point that is at least `least` screen pixels away from the
  * positions in `taken`. If the point is inside of the `stage`, prefers positions inside. */
-function apart([x, y]: Point, taken: readonly Point[], least: number, stage: HTMLElement): Point {
+function freePosition([x, y]: Point, taken: readonly Point[], least: number,
+  stage: HTMLElement): Point {
   const isFree = ([x, y]: Point) =>
     taken.every(it => Math.max(Math.abs(x - it[0]), Math.abs(y - it[1])) >= least);
   const [width, height] = [stage.clientWidth, stage.clientHeight];
   const isInside = ([x, y]: Point) => x >= 0 && y >= 0 && x <= width && y <= height;
-  const free = ASIDE.map(([dx, dy]): Point => [x + dx, y + dy]).filter(isFree);
+  const free = OFFSETS.map(([dx, dy]): Point => [x + dx, y + dy]).filter(isFree);
   return (isInside([x, y]) ? free.find(isInside) : undefined) ?? free[0] ?? [x, y];
 }
 

@@ -59,7 +59,7 @@ export function showProgress(share: number): void {
   setText(byId("percent"), `${Number((100 * share).toPrecision(3))} %`);
 }
 
-const stem = () => files.at.name.replace(/\.scn$/, "");
+const stem = () => files.current.name.replace(/\.scn$/, "");
 const rendering = byId("rendering");
 /** Downloads a file that the server renders. By default, `params` contains the text of the scene.
  * `part` is added to the end of the file's name. */
@@ -101,7 +101,7 @@ byId("share").addEventListener("click", async () => {
     "The scene is too long for a link: give away its file.", "warning");
   const { shownLayers } = overlays;
   field.value = addressWith(KEY, await packed(editor.text))
-    + (shownLayers === "" ? "" : `&show=${shownLayers}`) + outside.inLink;
+    + (shownLayers === "" ? "" : `&show=${shownLayers}`) + outside.linkFragment;
   dialog.showModal();
   field.select();
 });

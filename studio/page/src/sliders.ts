@@ -5,7 +5,7 @@ import type { ChangeDesc } from "@codemirror/state";
 import { byId, create, createButton } from "./dom";
 import { editor } from "./editor";
 import { frames } from "./frames";
-import { Dial, literalAt, written } from "./numbers";
+import { NumberSlider, literalAt, written } from "./numbers";
 import type { Slider } from "./protocol";
 import { render } from "./share";
 import { setText } from "./visible";
@@ -58,7 +58,7 @@ export async function refreshSliders(): Promise<void> {
 
 /** Creates the row of a slider. Its field `at` is the offset of the number in the text. */
 function createRow(name: string) {
-  const dial: Dial = new Dial(() => literalAt(row.at + 1));
+  const dial: NumberSlider = new NumberSlider(() => literalAt(row.at + 1));
   dial.range.setAttribute("aria-label", name);
   dial.range.addEventListener("input", () => { if (playing === row) stop(); });
   const [element, value, note] = [create("div", "slider-row"), create("output"), create("p")];
@@ -82,7 +82,8 @@ export function stop(): void {
 /** Downloads an animation of the scene in which the number runs from one end of its slider to the
  * other. The text does not change. If the slider is being recorded already, cancels the recording.
  */
-async function record(name: string, { limits, literal }: Dial, button: Element): Promise<void> {
+async function record(name: string, { limits, literal }: NumberSlider, button: Element,
+): Promise<void> {
   const found = literal();
   if (button.ariaPressed === "true") return byId("cancel").click();
   if (found === null || limits === null) return;

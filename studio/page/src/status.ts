@@ -29,7 +29,7 @@ export function picture([width, height]: [number, number], fineness: Fineness): 
 }
 
 /** Marks the picture as outdated and shows the reason `why`. If `why` is null, removes the mark. */
-export function stale(why: string | null): void {
+export function markOutdated(why: string | null): void {
   const note = byId("stale");
   note.hidden = why === null;
   setText(note, why ?? "");
