@@ -238,7 +238,8 @@ impl Edit {
         Self::remove_in(span, sources.get(span.source).text())
     }
 
-    /// Makes the edit that removes `span` from `text`, as [`Self::remove`] does.
+    /// Makes the same edit as [`Self::remove`], for callers that have no [`Sources`]. `text` is the
+    /// whole text of the span's source.
     pub fn remove_in(span: Span, text: &str) -> Self {
         let Span { source, start, end } = span;
         let before = text.get(..start).unwrap_or_default();

@@ -18,7 +18,7 @@ pub enum SimdWidth {
     Baseline,
 }
 
-/// Whether loops are also compiled for wider vectors than every processor of the architecture has.
-/// This is done on x86-64. On other architectures, the loops would be compiled a second time for
-/// the same vectors, which would only enlarge the program.
+/// Whether loops are compiled again for vectors wider than the baseline, i.e. wider than those that
+/// all processors of the architecture have. This is done only on x86-64. On other architectures,
+/// the second copy would use the same vectors and only enlarge the program.
 pub const HAS_WIDER: bool = cfg!(target_arch = "x86_64");

@@ -53,8 +53,10 @@ pub struct Sphere<T: Real> {
     rad_b: T::Radius,
 }
 
-/// Number of roundings in a value of Q = R² r·r − |c × r|² ([`Sphere`]). A linear form is computed
-/// with 12 roundings, so its square is computed with 24. The sum of squares adds 8.
+/// Upper bound on the number of roundings in a value of Q = R² r·r − |c × r|² ([`Sphere`]). Each
+/// component of c × r is a linear form of r with at most 12 roundings, so its square has at most 24
+/// of them. The 8 that remain are more than enough for the product, the sum of the squares and the
+/// difference.
 const SPHERE_ROUNDINGS: f64 = 32.0;
 
 impl<T: Real> Sphere<T> {

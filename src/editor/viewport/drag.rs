@@ -46,9 +46,9 @@ pub struct Drag<'a> {
     pub to: DVec2,
     /// Axis or plane along which the handle moves; `None` if it follows the pointer freely.
     pub along: Option<Along>,
-    /// Maximum distance, in pixels of the picture, between neighbouring points of the grid to which
-    /// the handle snaps. The changed numbers become multiples of a power of ten: the largest with
-    /// which the points are no farther apart. `None` if the drag does not snap to a grid.
+    /// Maximum number of the picture's pixels by which the handle moves from one point of the grid
+    /// to the next. The changed numbers are rounded to multiples of a power of ten: the largest one
+    /// that moves the handle by at most this distance. `None` if the drag does not snap to a grid.
     pub step: Option<f64>,
     /// Second camera that looks at the scene from outside, if the pointer is in its picture; `None`
     /// if the pointer is in the picture of the scene's own camera.

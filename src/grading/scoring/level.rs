@@ -107,8 +107,8 @@ impl<'a> Level<'a> {
         self.base.replace(Some(rendering));
     }
 
-    /// Returns the light that the picture shows in each cell, assuming that the program encoded it
-    /// by `curve`.
+    /// Returns the mean light of the pixels in each cell of the grid, assuming that the program
+    /// that made the picture encoded light by `curve`.
     pub fn observed(&self, curve: Curve) -> &[DVec3] {
         self.observed[curve as usize].get_or_init(|| {
             let pixel = |x, y| DVec3::from(self.film.pixels()[self.part.index(x, y)]);

@@ -52,7 +52,10 @@ impl Cells {
         tree
     }
 
-    /// Adds the objects in `stack[start..]` to the lists of a cell and of all cells below it.
+    /// Distributes the objects of a cell, which are `stack[start..]`. If they are few, the cell
+    /// lists all of them. Otherwise, the cell lists only those that are larger than its quarters,
+    /// and is divided. Each other object goes to every quarter that it meets, where the same is
+    /// done again.
     fn divide(
         &mut self,
         cell: usize,

@@ -192,8 +192,10 @@ fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: 
 }
 
 impl Lanes {
-    /// Stores in `margin` the least of the values of the surface's boundary forms at each sample,
-    /// where each form is divided by its error bound.
+    /// Stores in `margin`, for each sample, the least value of the forms that bound the surface:
+    /// the lines `edges` and a sphere's silhouette `conic`. The forms are already divided by their
+    /// error bounds. Therefore, a sample hits the surface if its margin is above 1, misses it if
+    /// the margin is below −1, and is uncertain otherwise.
     #[inline(always)]
     fn margin(&mut self, edges: &[ScaledLine], conic: Option<&LocalQuadratic>, [x, y]: At) {
         let margin = &mut self.margin[..x.len()];

@@ -63,8 +63,8 @@ fn ten_thousand_objects_are_known_within_1e_9() {
     ));
 }
 
-/// The silhouettes of two spheres differ by as little as 1e-15. The error bounds must still be at
-/// most 1e-9.
+/// The silhouettes of two spheres differ by as little as 1e-15. The error bound of each pixel must
+/// still be at most 1e-9, and each pixel must be the mean of its four quarters.
 #[test]
 fn nearly_coincident_outlines_are_known_and_add_up() {
     for gap in ["1e-6", "1e-8", "1e-10", "1e-12", "1e-14", "1e-15"] {
