@@ -108,11 +108,13 @@ const told = (message: string, from: number) =>
 export const firstError = () => diagnosed().filter(([it]) => it.severity === "error").slice(0, 1)
   .map(([{ message }, from]) => `Line ${told(message, from)}`);
 
-/** Lists the problems below the text: only the first one or, if the list is open, all. */
+/** Lists the problems below the text: all if the list is open, and otherwise only the first error,
+ * or the first warning if there is no error. */
 export function showProblems(): void {
   const found = diagnosed();
   const { length } = found;
-  const worst = found.some(([it]) => it.severity === "error") ? "problem" : "warning";
+  const error = found.find(([it]) => it.severity === "error");
+  const worst = error ? "problem" : "warning";
   button.dataset["worst"] = length === 0 ? "" : worst;
   setText(button, length === 0 ? "No problems" : `${length} ${worst}${length === 1 ? "" : "s"}`);
   const list = byId("problem-list");
@@ -120,7 +122,8 @@ export function showProblems(): void {
   list.hidden = length === 0;
   list.toggleAttribute("data-all", isWhole);
   // Hidden items are not created, because a drag updates the list many times a second.
-  list.replaceChildren(...found.slice(0, isWhole ? length : 1).map(it => item(...it)));
+  const listed = isWhole || !error ? found.slice(0, isWhole ? length : 1) : [error];
+  list.replaceChildren(...listed.map(it => item(...it)));
 }
 
 /** Creates the list item of a problem: a button that moves the cursor there, and its fixes. */

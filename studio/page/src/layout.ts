@@ -56,7 +56,8 @@ const showTab = (tab: string) => {
   for (const it of tabs) it.setAttribute("aria-pressed", String(it.dataset["tab"] === tab));
 };
 for (const it of tabs) it.addEventListener("click", () => showTab(it.dataset["tab"] ?? ""));
-byId("problems").addEventListener("click", () => showTab("text"));
+// What these buttons open is below the text.
+for (const id of ["problems", "lessons"]) byId(id).addEventListener("click", () => showTab("text"));
 
 byId("zoom-in").addEventListener("click", () => picture.zoomBy(2));
 byId("zoom-out").addEventListener("click", () => picture.zoomBy(0.5));

@@ -11,7 +11,8 @@ import { frames } from "./frames";
 import { overlays } from "./overlays";
 import { Refusal, type Condition, type Judged, type LessonText } from "./protocol";
 import { sanitized } from "./sanitize";
-import { say } from "./status";
+import { say, unsay } from "./status";
+import { tools } from "./tools";
 import { setText } from "./visible";
 
 /** Delay after a change, in ms, before the conditions are judged. With a shorter one, each step of
@@ -73,13 +74,17 @@ export function startLessons(own: LessonText | null | undefined, isNew: boolean)
   else if (lessons[0]) open(lessons[0]);
 }
 
+/** Last message that there is no lesson of the number in the page's address. */
+let absent = "";
+
 /** Opens the lesson that the page's address names. If it names none, closes the open lesson. */
 export function followAddress(): void {
   const named = inAddress(KEY);
+  unsay(absent);
   if (named === null) return close();
   const lesson = lessons[Number(named)];
   if (lesson) open(lesson);
-  else say(`There is no lesson ${named}.`, "warning");
+  else say(absent = `There is no lesson ${named}.`, "warning");
 }
 
 /** Opens a lesson. Its scene replaces the page's scene, unless the lesson is about the user's own
@@ -88,6 +93,8 @@ function open(lesson: Lesson): void {
   if (lesson !== current) {
     keepText();
     [current, step, judged] = [lesson, 0, null];
+    tools.reset();
+    overlays.restoreLayers();
     if ((usesOwnScene && lesson === lessons[0]) || inAddress("scene") !== null) files.leaveLesson();
     else {
       files.startLesson(`${lesson.name}.scn`, lesson.start, texts.get(lesson) ?? lesson.start);
@@ -107,6 +114,7 @@ function keepText(): void {
 function close(): void {
   keepText();
   files.leaveLesson();
+  overlays.restoreLayers();
   current = null;
   isList = true;
   section.hidden = true;

@@ -27,6 +27,8 @@ class OverlayLayer {
   selected: number | null = null;
   /** Column and row of the pixel under the glass, which is marked; null if there is none. */
   private pinned: Point | null = null;
+  /** Layers that `hideLayers` has hidden, as in `shownLayers`; null if it has hidden none. */
+  private hiddenLayers: string | null = null;
 
   constructor(private readonly svg: SVGElement) {
     const layers = inAddress("show")?.split(",") ?? remembered("layers")?.split(" ") ?? [];
@@ -42,20 +44,29 @@ class OverlayLayer {
 
   /** Shows the layers that the page's new address names, if it names any. They are not
    * remembered. */
-  showAddressed(): void {
-    const layers = inAddress("show")?.split(",");
-    if (layers === undefined) return;
-    for (const box of boxes) box.checked = layers.includes(box.name);
-    this.draw();
-    this.onNeed();
-  }
+  showAddressed(): void { this.showLayers(inAddress("show")); }
 
-  /** Hides all layers. A reload shows the remembered layers again. If the page's address names
+  /** Hides all layers. `restoreLayers` or a reload shows them again. If the page's address names
    * layers, does nothing. */
   hideLayers(): void {
     if (inAddress("show") !== null) return;
-    for (const box of boxes) box.checked = false;
+    this.hiddenLayers ??= this.shownLayers;
+    this.showLayers("");
+  }
+
+  /** Shows the layers again that `hideLayers` has hidden, unless the page's address names others.
+   */
+  restoreLayers(): void {
+    if (inAddress("show") === null) this.showLayers(this.hiddenLayers);
+    this.hiddenLayers = null;
+  }
+
+  /** Shows only the layers `names`, which commas separate. If `names` is null, does nothing. */
+  private showLayers(names: string | null): void {
+    if (names === null) return;
+    for (const box of boxes) box.checked = names.split(",").includes(box.name);
     this.draw();
+    this.onNeed();
   }
 
   /** Names of the layers that are shown, separated by commas. */

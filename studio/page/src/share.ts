@@ -7,7 +7,7 @@ import { editor } from "./editor";
 import { files } from "./files";
 import { outside } from "./outside";
 import { overlays } from "./overlays";
-import { say } from "./status";
+import { say, unsay } from "./status";
 import { setText } from "./visible";
 
 /** Maximum length of a scene in a link, in characters. Browsers limit the length of an address, so
@@ -40,15 +40,18 @@ async function unpacked(text: string): Promise<string> {
 /** Compressed scene that was last read from the page's address; null if there was none. */
 let known: string | null = null;
 
+const DAMAGED = "The link is damaged: its scene cannot be read.";
+
 /** Returns the scene in the page's address. Returns null if there is none or it was read before. */
 export async function sceneInAddress(): Promise<string | null> {
+  unsay(DAMAGED);
   const held = inAddress(KEY);
   if (held === null || held === known) return null;
   known = held;
   try {
     return await unpacked(held);
   } catch {
-    say("The link is damaged: its scene cannot be read.", "warning");
+    say(DAMAGED, "warning");
     return null;
   }
 }

@@ -36,6 +36,14 @@ class Tools {
       (this.chosen = input.value as Along | ""));
   }
 
+  /** Chooses what is chosen when the page is opened: drags move objects, and the user has chosen no
+   * axis or plane. */
+  reset(): void {
+    radios("tool")[0]?.click();
+    this.chosen = undefined;
+    for (const input of radios("along")) input.checked = input.value === this.kept;
+  }
+
   /** Offers the axes and planes to which drags can be restricted if an object is selected. Until
    * the user chooses, `floor` is chosen if `hasFloor` is set, and otherwise no restriction. */
   offer(isSelected: boolean, hasFloor: boolean): void {

@@ -44,6 +44,20 @@ test("g puts the pixel under the pointer under the glass, and takes it away", as
   assert.equal(await page.locator("#lines .pinned").count(), 0);
 });
 
+test("the glass and its buttons are within the page, also on a projector", async t => {
+  const page = await open(await launch(t), await host(t), { viewport: { width: 1280, height: 720 } });
+  await page.mouse.move(900, 300);
+  await page.keyboard.press("g");
+  await page.waitForSelector("#glass-points circle");
+  for (const key of ["", "b"]) {
+    if (key) await page.keyboard.press(key);
+    const [scrolled, width] = await page.locator("#glass").evaluate(it => [it.scrollWidth, it.clientWidth]);
+    assert.ok(scrolled <= width, `${key}: ${scrolled} of ${width}`);
+    const { x, width: own } = await page.locator("#glass button").first().boundingBox();
+    assert.ok(x + own <= 1280, key);
+  }
+});
+
 test("the glass begins with the scene's own method and number of samples", async t => {
   const served = await host(t, `${SCENE}sampler { method random per_pixel 5 }\n`);
   const page = await open(await launch(t), served);

@@ -233,6 +233,16 @@ test("the first problem is shown with its fix above the sliders, and the list ho
   assert.ok(list < 300 && scrolled > 10_000, `${list} ${scrolled}`);
 });
 
+test("beside a long fix, the first error has half of the width, and comes before warnings", async t => {
+  const page = await open(await launch(t), await host(t));
+  for (const text of ["", "camera {}"]) {
+    await type(page, text);
+    await page.waitForSelector("#problem-list .error .fix");
+    const [place, list] = await Promise.all([".error .place", ""].map(it => page.locator(`#problem-list ${it}`).boundingBox()));
+    assert.ok(place.width > 0.4 * list.width, `${text}: ${place.width} of ${list.width}`);
+  }
+});
+
 test("vanishing points outside the page are arrows, and an empty layer gives a reason", async t => {
   const page = await open(await launch(t), await host(t));
   await page.click("summary:text('Show')");
@@ -317,6 +327,10 @@ test("a phone has two rows of header and tools, one on its side, and selecting m
     await finished(page);
     const cut = await page.evaluate(() => [...document.querySelectorAll("button, summary")].filter(it => it.checkVisibility({ visibilityProperty: true }) && it.scrollWidth > it.clientWidth + 1).map(it => it.textContent));
     assert.deepEqual(cut, [], `${width}`);
+    // What the button opens is below the text, which a phone shows in another tab.
+    await page.click("#lessons");
+    await page.waitForSelector("#lesson:not([hidden])");
+    assert.ok(await page.isVisible("#lesson"), `${width}`);
     await page.context().close();
   }
 });

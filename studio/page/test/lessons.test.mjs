@@ -6,7 +6,7 @@ import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { test } from "node:test";
-import { andFinished, drag, FIGURE, finished, hand, handle, host, launch, link, menu, open, serve, site, text, type } from "./helpers.mjs";
+import { andFinished, drag, FIGURE, finished, hand, handle, hold, host, launch, link, menu, open, serve, site, text, type } from "./helpers.mjs";
 import { choose, conditions, last, names, read, state, until } from "./lessons.mjs";
 
 test("a lesson is opened, done with the mouse, and left, and no text is lost", async t => {
@@ -183,6 +183,39 @@ test("a lesson is done by keyboard alone", async t => {
   await page.keyboard.press("Enter");
   assert.equal(await focused(), "lessons");
   assert.ok(await page.isHidden("#lesson"));
+});
+
+test("a lesson starts with the usual tools and without layers, and leaving it shows the layers again", async t => {
+  const page = await open(await launch(t), await host(t));
+  const layers = () => page.locator("#layers [name]:checked").evaluateAll(all => all.map(it => it.name));
+  const tool = () => page.locator("input[name=tool]:checked").getAttribute("value");
+  await menu(page, "Show", "#layers >> text=Horizon");
+  await page.keyboard.press("Escape");
+  for (const number of [1, 5]) {
+    await page.selectOption("#objects", { index: 1 });
+    await hold(page, "z");
+    await page.focus("#stage");
+    await page.keyboard.press("o");
+    assert.deepEqual([await tool(), await layers()], ["orbit", number === 1 ? ["horizon"] : []]);
+    await choose(page, number);
+    assert.deepEqual([await tool(), await layers()], ["move", []]);
+    await page.selectOption("#objects", { index: 1 });
+    await page.waitForSelector("#along:not([hidden])");
+    assert.notEqual(await page.locator("input[name=along]:checked").getAttribute("value"), "z");
+  }
+  await page.click("#lesson-close");
+  assert.deepEqual(await layers(), ["horizon"]);
+});
+
+test("a warning about a link is gone when the next link is right", async t => {
+  const page = await open(await launch(t), await host(t));
+  const said = text => page.waitForFunction(text => document.querySelector("#said").textContent === text, text);
+  for (const [wrong, message] of [["lesson=77", "There is no lesson 77."], ["scene=!!!", "The link is damaged: its scene cannot be read."]]) {
+    await page.evaluate(hash => { location.hash = hash; }, wrong);
+    await said(message);
+    await page.evaluate(() => { location.hash = "lesson=2"; });
+    await said("");
+  }
 });
 
 test("a link opens a lesson, also after a reload, and Back leaves it", async t => {

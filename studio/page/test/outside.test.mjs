@@ -34,6 +34,30 @@ async function look(page, name) {
   await outside(page);
 }
 
+/** A scene whose far plane is below the view from outside in a window of 1280×720. */
+const DEEP = `image { width 640  height 360 }
+camera { eye (4, 3, 8)  lookat (0, 1, 0)  d 2  near 1  far 40 }
+sphere { center (-1.5, 1, 0) }
+box { center (2, 1.5, -1)  size (1, 3, 1) }
+checkerboard {}
+`;
+
+test("a handle beyond the border that gets the focus scrolls neither the picture nor the view from outside", async t => {
+  const page = await open(await launch(t), await host(t, DEEP), { viewport: { width: 1280, height: 720 } });
+  await outside(page);
+  let beyond = 0;
+  for (const place of ["#outside", "#stage"]) {
+    const { y, height } = await page.locator(place).boundingBox();
+    for (const handle of await page.locator(`${place} .handle`).all()) {
+      const box = await handle.boundingBox();
+      beyond += Number(box !== null && box.y > y + height);
+      await handle.focus();
+      assert.deepEqual(await page.locator(place).evaluate(it => [it.scrollLeft, it.scrollTop]), [0, 0], place);
+    }
+  }
+  assert.ok(beyond > 0);
+});
+
 test("the window dragged away from the eye narrows the angle, and Undo takes the drag back", async t => {
   const page = await open(await launch(t), await host(t));
   await outside(page);
