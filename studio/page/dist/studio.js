@@ -254,8 +254,8 @@ view**: the grey hint behind \`d\` says how large it is.
 
 ## Move the window away
 
-Click the number behind \`d\`, and pull its slider up. The window moves away from the eye: does the angle grow or shrink? What does
-that do to the ball? The objects themselves have not moved.
+Click the number behind \`d\`, and move its slider to the right. The window moves away from the eye: does the angle grow or shrink?
+What does that do to the ball? The objects themselves have not moved.
 
 ## Move the eye away
 

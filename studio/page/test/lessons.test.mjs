@@ -197,7 +197,7 @@ test("a lesson starts with the usual tools and without layers, and leaving it sh
     await page.focus("#stage");
     await page.keyboard.press("o");
     assert.deepEqual([await tool(), await layers()], ["orbit", number === 1 ? ["horizon"] : []]);
-    await choose(page, number);
+    await andFinished(page, () => choose(page, number));
     assert.deepEqual([await tool(), await layers()], ["move", []]);
     await page.selectOption("#objects", { index: 1 });
     await page.waitForSelector("#along:not([hidden])");
