@@ -6,8 +6,8 @@
 
 use std::{borrow::Cow, fmt::Write};
 
-/// Returns the text with invisible characters escaped, as in `\u{1b}`. Line feeds and tabs are
-/// kept.
+/// Returns `text` with its invisible characters escaped, as in `\u{1b}`. Line feeds and tabs are
+/// not escaped.
 pub fn visible(text: &str) -> Cow<'_, str> {
     if !text.chars().any(is_invisible) {
         return Cow::Borrowed(text);
@@ -47,7 +47,7 @@ pub fn escaped(text: &str) -> String {
         .replace('"', "&quot;")
 }
 
-/// Appends a character. An invisible one is escaped, as in `\u{1b}`.
+/// Appends a character to a text. An invisible character is escaped, as in `\u{1b}`.
 pub fn push_visible(text: &mut String, character: char) {
     if is_invisible(character) {
         // Writing to a string does not fail.

@@ -1,6 +1,6 @@
 //! Collects needless separators, such as `;` and `=`, and the characters that start comments in
-//! other languages, such as `#`. If a block contains the same sign several times, it is reported
-//! once, with a fix for all of its places.
+//! other languages, such as `#`. If the same sign occurs several times in a block, or outside of
+//! all blocks, it is reported once, with a fix for all of its places.
 
 use super::{Recovery, numbers::unit_of};
 use crate::{
