@@ -157,8 +157,8 @@ fn with_comments(span: Span, sources: &Sources) -> Span {
 /// Characters of white space within a line: space and tab.
 const BLANK: [char; 2] = [' ', '\t'];
 
-/// Returns whether only spaces and tabs stand between the start of the last line of `before` and
-/// the end of `before`.
+/// Returns whether the last line of `before` contains only spaces and tabs. A byte order mark at the
+/// start of `before` is ignored.
 fn starts_line(before: &str) -> bool {
     let outer = before.trim_end_matches(BLANK);
     outer.is_empty() || outer.ends_with(['\n', '\u{feff}'])
