@@ -68,7 +68,7 @@ pub struct Diagnostic {
     /// Whether the text at the primary label is superfluous. Editors show such text in grey.
     pub is_needless: bool,
     /// Whether the problem is a violation of the grammar, rather than a wrong name or value. If a
-    /// scene has such problems, the formatter reports only these.
+    /// scene violates the grammar, the formatter reports no other problems.
     pub is_of_syntax: bool,
 }
 

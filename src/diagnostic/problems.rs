@@ -55,7 +55,7 @@ impl Problems {
         self.left_out.get_or_insert(span);
     }
 
-    /// Returns whether a problem was omitted, so that further problems need not be searched for.
+    /// Returns whether a problem was omitted. The search for further problems can then stop.
     pub fn is_full(&self) -> bool {
         self.left_out.is_some()
     }

@@ -86,8 +86,8 @@ impl<'s> Report<'s> {
     /// contains all diagnostics.
     pub const MOST_SHOWN: usize = 100;
     /// Number of diagnostics that are shown as reports if there are more than [`Self::MOST_SHOWN`].
-    /// A user can correct these before checking the scene again; more would only lengthen the
-    /// output.
+    /// A user can correct this many mistakes before checking the scene again. More reports would
+    /// only lengthen the output.
     pub const FIRST_SHOWN: usize = 20;
 
     /// Makes a printer for diagnostics about `sources`.

@@ -1,8 +1,8 @@
 //! Escapes text so that it is safe to print to a terminal.
 //!
 //! The text may come from a scene, a file name, a picture or an argument. Characters are escaped if
-//! they could control a terminal, change the order of the printed text, or be invisible. These are
-//! the control characters and those that Unicode calls ignorable.
+//! they could control a terminal, change the order of the printed text, or be invisible. They are
+//! the control characters and the characters that Unicode calls ignorable.
 
 use std::{borrow::Cow, fmt::Write};
 

@@ -238,8 +238,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         (end, true)
     }
 
-    /// Reads the first item in `range`, and returns its start and the item. Returns `None` if there
-    /// is none, or if it does not follow the grammar.
+    /// Reads the first item in `range`, and returns its start and the item. Returns `None` if
+    /// `range` contains no item, or if the first item does not follow the grammar.
     fn item(&mut self, range: Range<usize>) -> Option<(usize, Item<'s>)> {
         self.doubtful = false;
         let text = self.text.get(..range.end)?;
