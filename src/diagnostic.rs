@@ -1,8 +1,8 @@
 //! Problems of a scene, and their output formats for people and for programs.
 //!
-//! Each stage makes [`Diagnostic`]s, with possible fixes, where it finds a problem. They are sorted
-//! in the order of the text, and formatted as reports for a terminal or as lines of JSON. The
-//! caller decides where to print them, and in which style.
+//! Each stage that reads a scene makes a [`Diagnostic`] for each problem that it finds, with fixes
+//! if possible. This module sorts the diagnostics in the order of the text, and formats them as
+//! reports for a terminal or as lines of JSON. The caller chooses a style and prints the result.
 
 #[cfg(feature = "fancy")]
 mod excerpt;
@@ -56,7 +56,7 @@ pub struct Diagnostic {
     pub severity: Severity,
     /// The code of the kind of problem, such as `pinhole::unknown_field`.
     pub code: String,
-    /// The message: a sentence that says what is wrong in the scene's own terms and can be
+    /// The message: a sentence that says what is wrong, in the words of the scene. It can be
     /// understood without the labels.
     pub message: String,
     /// Advice on how to solve the problem.
@@ -68,7 +68,7 @@ pub struct Diagnostic {
     /// Whether the text at the primary label is superfluous. Editors show such text in grey.
     pub is_needless: bool,
     /// Whether the problem is a violation of the grammar, rather than a wrong name or value. If a
-    /// scene has such problems, the formatter reports only these.
+    /// scene violates the grammar, the formatter reports no other problems.
     pub is_of_syntax: bool,
 }
 

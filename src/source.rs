@@ -1,9 +1,9 @@
 //! Source texts and positions in them.
 //!
-//! A source is made from bytes and a name. It computes the lines and columns of offsets in its
-//! text, which are needed only for output; inside the program, positions are byte ranges,
-//! [`Span`]s. A scene has one file and any number of `--set` arguments. A diagnostic may refer to
-//! each of them, so a [`Span`] contains the identifier of its source.
+//! A [`Source`] is made from bytes and a name. Inside the program, positions are byte ranges
+//! ([`Span`]). Lines and columns are needed only for output, and [`Source::place`] computes them. A
+//! scene has one file and any number of `--set` arguments. A diagnostic may refer to each of these
+//! texts, so a [`Span`] contains the identifier of its source.
 
 mod lines;
 
@@ -217,7 +217,7 @@ impl Source {
     }
 
     /// Returns whether the file is probably UTF-16, with or without a byte order mark. Most scenes
-    /// are ASCII; as UTF-16, exactly every second byte of an ASCII text is zero.
+    /// contain only ASCII characters. In UTF-16, one of the two bytes of such a character is zero.
     pub fn is_utf16(&self) -> bool {
         const LOOKED_AT: usize = 256;
         let bytes = self.text.as_bytes();

@@ -8,8 +8,8 @@ use std::cell::Cell;
 use strsim::osa_distance;
 
 /// Remaining number of comparisons between misspelt names and known ones. When it is used up, no
-/// further names are suggested. Without a limit, each mistake in a text would be compared with each
-/// name in it, and the time would grow with the square of the text's length.
+/// further names are suggested. Without a limit, each misspelt name of a text would be compared
+/// with each known name, and the time would grow with the square of the text's length.
 #[derive(Debug)]
 pub struct ComparisonBudget(Cell<usize>);
 
@@ -21,7 +21,7 @@ impl Default for ComparisonBudget {
 
 impl ComparisonBudget {
     /// Subtracts `names` comparisons from the remaining number. Returns `false`, and subtracts
-    /// nothing, if fewer remain.
+    /// nothing, if fewer comparisons remain.
     pub fn spend(&self, names: usize) -> bool {
         let left = self.0.get().checked_sub(names);
         self.0.set(left.unwrap_or(self.0.get()));
@@ -30,9 +30,9 @@ impl ComparisonBudget {
 }
 
 /// Returns the candidate that is most similar to `written`, or the first of several equally similar
-/// ones. A candidate is similar if it is equal except for case, or differs by at most about one
-/// typing error per three letters (optimal string alignment distance). Returns `None` if no
-/// candidate is similar.
+/// ones. A candidate is similar if it is equal except for case, or if it differs by at most about
+/// one typing error per three letters. Typing errors are counted as in the optimal string alignment
+/// distance. Returns `None` if no candidate is similar.
 pub fn nearest<'c>(
     written: &str,
     candidates: impl IntoIterator<Item = &'c str>,
@@ -42,7 +42,7 @@ pub fn nearest<'c>(
 
 /// Returns the name of a value or a function that is most similar to `written`, as [`nearest`]
 /// does. If `written` has at most two letters, returns only a name that is equal except for case,
-/// since so short a name is seldom mistyped. Returns `None` if there is no such name.
+/// because short names are seldom mistyped. Returns `None` if no name is found.
 pub fn nearest_name<'c>(
     written: &str,
     candidates: impl IntoIterator<Item = &'c str>,
@@ -54,8 +54,8 @@ pub fn nearest_name<'c>(
     }
 }
 
-/// Returns whether `written` surely means `near`, the nearest candidate, because no other candidate
-/// is equally near. Returns `false` in any case if
+/// Returns whether `written` surely means `near`, the nearest candidate: no other candidate may be
+/// equally near. Also returns `false` if
 ///
 /// - the digits of the two names differ, because names such as `a1` and `a2` are different names
 ///   rather than misspellings;
@@ -85,8 +85,8 @@ pub fn is_only_near<'c>(
     least == 0 || candidates.all(|other| other == near || slips(other) > least)
 }
 
-/// Finds the nearest candidate; `None` if no candidate is similar. This function is not generic, so
-/// that it is compiled only once.
+/// Finds the nearest candidate. Returns `None` if no candidate is similar. Unlike [`nearest`], this
+/// function is not generic, so that it is compiled only once.
 fn nearest_of<'c>(written: &str, candidates: &mut dyn Iterator<Item = &'c str>) -> Option<&'c str> {
     // Maximum length, in characters, of a name that is compared. A longer text is not a mistyped
     // name, and comparing it would take long.
@@ -113,8 +113,8 @@ fn nearest_of<'c>(written: &str, candidates: &mut dyn Iterator<Item = &'c str>) 
     best.map(|(_, candidate)| candidate)
 }
 
-/// Returns whether a name is one of the words in `words`, ignoring case and `_`: `lookAt` and
-/// `look_at` are equal.
+/// Returns whether `written` is one of the words in `words`, which white space separates. Case and
+/// `_` are ignored: `lookAt` and `look_at` are equal.
 pub fn is_among(written: &str, words: &str) -> bool {
     fn letters(word: &str) -> impl Iterator<Item = u8> {
         let letters = word.bytes().filter(|byte| *byte != b'_');
@@ -124,8 +124,8 @@ pub fn is_among(written: &str, words: &str) -> bool {
     words.any(|word| letters(word).eq(letters(written)))
 }
 
-/// Returns the words that a name consists of: `near_clip` and `nearClip` both consist of near and
-/// clip.
+/// Splits a name into words, at each `_` and before each capital letter: `near_clip` into `near`
+/// and `clip`, and `nearClip` into `near` and `Clip`.
 pub fn words(name: &str) -> Vec<&str> {
     let mut words = Vec::new();
     for part in name.split('_') {

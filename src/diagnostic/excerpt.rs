@@ -12,9 +12,9 @@ use crate::source::{Source, SourceId, Sources, Span};
 
 /// Excerpt of a source: its labelled lines. Long lines are cut to the parts around the labels.
 ///
-/// miette, the library that draws reports, receives the excerpt instead of the text, so a line of
-/// ten megabytes is neither printed nor scanned. Every label ends before the end of the excerpt,
-/// since miette omits a label at the end of a text, and panics at a label beyond it.
+/// miette, the library that draws reports, receives the excerpt instead of the whole text, so it
+/// neither prints nor scans a line of ten megabytes. Every label ends before the end of the
+/// excerpt, since miette omits a label at the end of a text, and panics at a label beyond it.
 #[derive(Debug)]
 pub struct Excerpt<'s> {
     source: &'s Source,
@@ -32,8 +32,8 @@ struct ExcerptLine {
     start: usize,
     /// End of the line in the excerpt, in bytes, without the line feed.
     end: usize,
-    /// Pairs of byte offsets that map places of the source to places of the excerpt. There is a
-    /// pair for each shown character, and one for the end of each shown part of the line.
+    /// Pairs of a byte offset in the source and the matching byte offset in the excerpt. There is
+    /// a pair for each shown character, and one for the end of each shown part of the line.
     shown: Vec<(usize, usize)>,
 }
 
@@ -49,9 +49,9 @@ pub const MIN_COLUMNS: usize = 30;
 /// middle of a label to the label's message, as in `╰── message`. The message is wrapped to the
 /// columns that remain after this line.
 const HOOK_COLUMNS: usize = 4;
-/// Minimum width, in columns, to which a label's message is wrapped. It is used if the label stands
-/// so far to the right that less room is left. A narrower message would be hard to read. With a
-/// larger minimum, more lines of the scene would be cut to make room for messages.
+/// Minimum width, in columns, to which a label's message is wrapped, even if the label stands so
+/// far to the right that less room is left. A narrower message would be hard to read. With a larger
+/// minimum, more lines of the scene would be cut to make room for messages.
 const MIN_MESSAGE_COLUMNS: usize = 16;
 /// Maximum number of lines of a label that is drawn whole. Of a longer label, only the first line
 /// is drawn. With a much larger maximum, a label of a long block could fill the screen.
@@ -127,9 +127,9 @@ impl<'s> Excerpt<'s> {
         if number == 1 {
             range.start = self.source.bom_len().min(range.end);
         }
-        // miette draws labels on consecutive lines in one frame. For the frame, it gets only the
-        // number of the first line, and numbers the other lines one by one. Lines that are not
-        // consecutive in the source are therefore separated by an empty line.
+        // miette draws labels on consecutive lines in one frame. It gets only the number of the
+        // frame's first line, and counts the other lines from there. Lines that are not consecutive
+        // in the source are therefore separated by an empty line.
         let apart = self.lines.last().is_some_and(|l| l.number + 1 < number);
         if apart {
             self.text.push('\n');
@@ -195,8 +195,8 @@ impl SourceCode for Excerpt<'_> {
         ) else {
             return Err(MietteError::OutOfBounds);
         };
-        // If this function returns an error, miette draws the labels in separate frames. Therefore,
-        // it fails for lines that are not consecutive.
+        // If this function returns an error, miette draws the labels in separate frames. An error
+        // is therefore returned if lines between the labels are missing in the excerpt.
         if last.number - first.number != last_index - first_index {
             return Err(MietteError::OutOfBounds);
         }
@@ -216,9 +216,9 @@ impl SourceCode for Excerpt<'_> {
     }
 }
 
-/// Returns the part of a label's span that is drawn. For a label with too many lines, this is only
-/// the first line. If the label lies within one line of more than `columns` bytes, it is at most
-/// the first `columns`/2 bytes of the label.
+/// Returns the part of a label's span that is drawn. Of a label with too many lines, only the first
+/// line is drawn. Of a label within one line of more than `columns` bytes, at most the first
+/// `columns`/2 bytes are drawn.
 fn shorten(span: Span, source: &Source, columns: usize) -> Span {
     let mut span = source.clamped(span);
     let first = source.line(span.start);
@@ -233,9 +233,9 @@ fn shorten(span: Span, source: &Source, columns: usize) -> Span {
     span
 }
 
-/// Returns the parts of a line that are shown. A line that fits is shown whole. In a line that is
-/// too long, or that leaves no room for a label's message, a quarter of `columns` is shown on each
-/// side of each label.
+/// Returns the parts of a line that are shown. A line that fits is shown whole. If the line is too
+/// long, or leaves no room for a label's message, the text around the start and the end of each
+/// label is shown: `columns`/4 bytes on each side.
 fn shown_pieces(
     source: &Source,
     line: Range<usize>,

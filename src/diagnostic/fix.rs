@@ -2,8 +2,8 @@
 
 use crate::source::{SourceId, Sources, Span, sort_by_span};
 
-/// Degree of certainty of a fix, which decides who may apply it. The variants are ordered: a tool
-/// that applies fixes of one variant also applies those of the variants before it.
+/// Certainty of a fix. It decides whether a tool may apply the fix without asking. The variants are
+/// ordered: a tool that applies fixes of one variant also applies those of the variants before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Applicability {
@@ -39,7 +39,7 @@ impl Applicability {
 pub struct Fix {
     /// What the fix does, as an imperative such as "write `30deg`".
     pub title: String,
-    /// Certainty of the fix, which decides who may apply it.
+    /// Certainty of the fix, which decides whether it may be applied without asking.
     pub applicability: Applicability,
     /// The edits, sorted by place; their spans do not overlap.
     pub edits: Vec<Edit>,
@@ -65,8 +65,8 @@ impl Fix {
     /// generic, so that it is compiled only once.
     fn sorted(title: String, mut edits: Vec<Edit>) -> Self {
         sort_by_span(&mut edits, |edit| edit.span);
-        // A removal includes the adjacent white space. White space between two removals is included
-        // only in the first removal, so that their spans do not overlap.
+        // A removal includes the adjacent white space. White space between two removals may be in
+        // both spans. It is then left only in the first one, so that the spans do not overlap.
         for index in 1..edits.len() {
             let before = edits[index - 1].span;
             let span = &mut edits[index].span;
@@ -157,18 +157,19 @@ fn with_comments(span: Span, sources: &Sources) -> Span {
 /// Characters of white space within a line: space and tab.
 const BLANK: [char; 2] = [' ', '\t'];
 
-/// Returns whether only spaces and tabs stand after the last line start in `before`.
+/// Returns whether the last line of `before` contains only spaces and tabs, or a byte order mark and
+/// spaces and tabs.
 fn starts_line(before: &str) -> bool {
     let outer = before.trim_end_matches(BLANK);
     outer.is_empty() || outer.ends_with(['\n', '\u{feff}'])
 }
 
-/// Returns whether `rest` is empty or starts with a line end.
+/// Returns whether `rest`, the text after an offset, is empty or starts with a line end.
 fn ends_line(rest: &str) -> bool {
     rest.is_empty() || rest.starts_with(['\n', '\r'])
 }
 
-/// Returns the text after the spaces, tabs and comments at its start. A line end is skipped only if
+/// Returns `text` without the spaces, tabs and comments at its start. A line end is skipped only if
 /// it lies within a `/* */` comment.
 fn past_comments(text: &str) -> &str {
     let mut rest = text.trim_start_matches([' ', '\t']);
@@ -298,10 +299,9 @@ impl Edit {
 /// Applies the edits of `fix` that belong to `source` to `text`, the text of this source, and
 /// returns the result.
 ///
-/// The places of the edits refer to the text in which the problem was found. In the result, other
-/// fixes no longer have the right places. So never apply a second fix to the result: parse the
-/// result again, or use [`Mistakes::fixed`](super::Mistakes::fixed), which applies the fixes of all
-/// mistakes.
+/// The spans of all fixes refer to the text in which the problems were found, and do not fit the
+/// result. So never apply a second fix to the result: parse the result again, or use
+/// [`Mistakes::fixed`](super::Mistakes::fixed), which applies the fixes of all mistakes.
 ///
 /// ```
 /// use pinhole::{Scene, diagnostic::apply, source::SourceId};

@@ -9,9 +9,10 @@ use crate::source::Sources;
 
 /// Error that a text is not a valid scene: its mistakes and warnings, in the order of the text.
 ///
-/// `Display` prints them as the command line does, without colour. If the feature `fancy` is
-/// disabled, it prints each as a line with its place, and a line of help. `Debug` prints the same
-/// text, so that a `main` function that returns this error ends with a readable report.
+/// `Display` prints the mistakes as the command line does, without colour. If the feature `fancy`
+/// is disabled, it prints a line with the place of each mistake, and below it the help. `Debug`
+/// prints the same text, so that a `main` function that returns this error ends with a readable
+/// report.
 ///
 /// ```
 /// let text = "camera { eye (0, 2, 8)  lookt (0, 1, 0) }  checkerboard {}";
@@ -38,7 +39,7 @@ impl Mistakes {
         }
     }
 
-    /// Iterates over the mistakes, in the order of the text.
+    /// Iterates over the mistakes and warnings, in the order of the text.
     pub fn iter(&self) -> slice::Iter<'_, Diagnostic> {
         self.diagnostics.iter()
     }

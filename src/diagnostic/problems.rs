@@ -15,8 +15,8 @@ use crate::source::Span;
 /// the memory.
 pub const MOST_PROBLEMS: usize = 10_000;
 
-/// Message of the diagnostic that is added in place of all omitted problems. The summary does not
-/// count this diagnostic as a mistake.
+/// Message of the last diagnostic if problems were omitted. The summary of a report does not count
+/// this diagnostic as a mistake.
 pub const LEFT_OUT: &str = "there are too many mistakes, and the others are left out";
 
 /// List of at most [`MOST_PROBLEMS`] problems that one stage of reading a scene found.
@@ -28,8 +28,8 @@ pub struct Problems {
 }
 
 impl Problems {
-    /// Adds a problem. If [`MOST_PROBLEMS`] are stored, omits it and records its place. If a
-    /// problem was omitted before, does nothing.
+    /// Adds a problem. If [`MOST_PROBLEMS`] problems are stored already, omits the new one and
+    /// records its place. Does nothing if a problem was omitted before.
     pub fn push(&mut self, problem: Diagnostic) {
         if self.is_full() {
             return;
@@ -41,8 +41,9 @@ impl Problems {
         }
     }
 
-    /// Adds a problem whose place in the text is before those of problems that were found earlier.
-    /// It is added even if one of those was omitted, unless [`MOST_PROBLEMS`] problems are stored.
+    /// Adds a problem that is reported late although its place in the text is earlier. Unlike
+    /// [`Self::push`], adds the problem even if another one was omitted before. Does nothing if
+    /// [`MOST_PROBLEMS`] problems are stored.
     pub fn push_earlier(&mut self, problem: Diagnostic) {
         if self.kept.len() < MOST_PROBLEMS {
             self.kept.push(problem);
@@ -54,7 +55,7 @@ impl Problems {
         self.left_out.get_or_insert(span);
     }
 
-    /// Returns whether a problem was omitted, so that further problems need not be searched for.
+    /// Returns whether a problem was omitted. The search for further problems can then stop.
     pub fn is_full(&self) -> bool {
         self.left_out.is_some()
     }

@@ -1,7 +1,8 @@
 //! Formats diagnostics for people, as text for a terminal.
 //!
-//! The text is drawn by miette or consists of sentences. miette receives only the labelled lines,
-//! cut to the parts that are shown.
+//! A report is either drawn by the library miette, with an excerpt of the scene, or consists of
+//! sentences, for screen readers. miette receives only the labelled lines, cut to the parts that
+//! are shown.
 
 use std::{cmp::Reverse, collections::BTreeMap, fmt::Write};
 
@@ -24,9 +25,9 @@ pub struct Style {
     pub color: bool,
     /// Width, in columns, to which the help is wrapped.
     pub width: usize,
-    /// Width of the terminal, in columns. Lines of the scene are cut to this width; labels and
-    /// titles are wrapped to it. If it is `None`, there is no terminal, and only very long lines
-    /// are cut.
+    /// Width of the terminal, in columns. Lines of the scene are cut to this width, and labels and
+    /// titles are wrapped to it. `None` means that the output is no terminal; only very long lines
+    /// are then cut.
     pub excerpt: Option<usize>,
 }
 
@@ -85,8 +86,8 @@ impl<'s> Report<'s> {
     /// contains all diagnostics.
     pub const MOST_SHOWN: usize = 100;
     /// Number of diagnostics that are shown as reports if there are more than [`Self::MOST_SHOWN`].
-    /// A user can correct these before checking the scene again; more would only lengthen the
-    /// output.
+    /// A user can correct this many mistakes before checking the scene again. More reports would
+    /// only lengthen the output.
     pub const FIRST_SHOWN: usize = 20;
 
     /// Makes a printer for diagnostics about `sources`.
@@ -95,9 +96,8 @@ impl<'s> Report<'s> {
     }
 
     /// Returns the reports, separated by empty lines, and a summary of their number. Errors come
-    /// before warnings, since a warning may be a consequence of an error. The errors are in the
-    /// order of `diagnostics`, and so are the warnings. Returns an empty text if there are no
-    /// diagnostics.
+    /// before warnings, since a warning may be a consequence of an error. Otherwise, the reports
+    /// are in the order of `diagnostics`. Returns an empty text if there are no diagnostics.
     pub fn human(&self, diagnostics: &[Diagnostic]) -> String {
         if diagnostics.is_empty() {
             return String::new();

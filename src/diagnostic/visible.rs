@@ -1,13 +1,13 @@
 //! Escapes text so that it is safe to print to a terminal.
 //!
 //! The text may come from a scene, a file name, a picture or an argument. Characters are escaped if
-//! they could control a terminal, change the order of the printed text, or be invisible. These are
-//! the control characters and those that Unicode calls ignorable.
+//! they could control a terminal, change the order of the printed text, or be invisible. They are
+//! the control characters and the characters that Unicode calls ignorable.
 
 use std::{borrow::Cow, fmt::Write};
 
-/// Returns the text with invisible characters escaped, as in `\u{1b}`. Line feeds and tabs are
-/// kept.
+/// Returns `text` with its invisible characters escaped, as in `\u{1b}`. Line feeds and tabs are
+/// not escaped.
 pub fn visible(text: &str) -> Cow<'_, str> {
     if !text.chars().any(is_invisible) {
         return Cow::Borrowed(text);
@@ -47,7 +47,7 @@ pub fn escaped(text: &str) -> String {
         .replace('"', "&quot;")
 }
 
-/// Appends a character. An invisible one is escaped, as in `\u{1b}`.
+/// Appends a character to a text. An invisible character is escaped, as in `\u{1b}`.
 pub fn push_visible(text: &mut String, character: char) {
     if is_invisible(character) {
         // Writing to a string does not fail.

@@ -7,9 +7,9 @@
 //! - the fields of objects of one kind, up to the first field whose name differs.
 //!
 //! A line of comments separates groups of objects. The braces of `image`, `camera` and `sampler`
-//! are aligned wherever these blocks stand, since they belong together by their meaning. If parts
-//! differ much in width, the next parts are not all aligned in one column, since that would need
-//! many blanks.
+//! are aligned wherever these blocks stand, since they belong together by their meaning. If the
+//! texts before a column differ much in width, the column is split in several, since a single
+//! column would need many blanks.
 
 use super::{
     entries::{BlockEntry, Entry, EntryKind},
@@ -17,9 +17,10 @@ use super::{
 };
 use crate::schema;
 
-/// Maximum difference, in characters, between the widths of parts that share a column. A part whose
-/// width differs by more starts a new column. Without a limit, one wide part would move everything
-/// after the narrow parts far to the right. The language's reference states the number.
+/// Maximum difference, in characters, between the widths of the texts before a shared column, such
+/// as the names of fields before their values. A text whose width differs by more starts a new
+/// column. Without a limit, one wide text would move the whole column far to the right. The
+/// language's reference states the number.
 const MAX_WIDTH_DIFFERENCE: usize = 20;
 
 /// Minimum number of consecutive blocks of one kind, each written on one line, that form a table.
@@ -53,8 +54,8 @@ pub fn align(entries: &mut [Entry<'_>]) {
 }
 
 /// Keeps neighbouring blocks of one kind on one line each, if each was written on one line and
-/// there are at least [`MIN_TABLE_ROWS`]. Some lines may then be slightly too wide, but such a
-/// table is readable at a glance.
+/// there are at least [`MIN_TABLE_ROWS`] of them. Some lines may then be slightly too wide, but a
+/// table of similar blocks is easy to read.
 fn keep_rows(entries: &mut [Entry<'_>]) {
     for rows in entries.chunk_by_mut(|a, b| !b.blank && is_row_beside(a, b)) {
         if rows.len() < MIN_TABLE_ROWS {
@@ -68,8 +69,8 @@ fn keep_rows(entries: &mut [Entry<'_>]) {
     }
 }
 
-/// Returns whether both entries are blocks of one kind, each written on one line and not much wider
-/// than allowed.
+/// Returns whether both entries are blocks of one kind, each written on one line and at most a
+/// fifth wider than the maximum width of a line.
 fn is_row_beside(a: &Entry<'_>, b: &Entry<'_>) -> bool {
     let is_row = |block: &BlockEntry<'_>| block.on_one_line || block.is_nearly_one_line;
     match (block(a), block(b)) {
@@ -165,8 +166,8 @@ fn runs(entries: &[Entry<'_>], class: fn(&Entry<'_>) -> Alignment) -> Vec<Vec<us
 
 /// Splits `list`, which contains the indices of entries, into consecutive parts. Within a part, the
 /// widths of the entries differ by at most [`MAX_WIDTH_DIFFERENCE`]. Each part is as long as
-/// possible and is returned with its greatest width. `width` returns the width of an entry; an
-/// entry without a width belongs to the part before it.
+/// possible and is returned with its greatest width. `width` returns the width of an entry. An
+/// entry for which it returns `None` belongs to the same part as the entry before it.
 pub fn shared(list: &[usize], width: impl Fn(usize) -> Option<usize>) -> Vec<(&[usize], usize)> {
     let mut parts = Vec::new();
     let (mut from, mut least, mut most) = (0, usize::MAX, 0);
@@ -239,8 +240,8 @@ fn objects(entries: &mut [Entry<'_>], run: &[usize]) {
 }
 
 /// Aligns the fields of the objects `rows` from the index `field` on. The fields before this index
-/// are aligned already. Consecutive objects are aligned if they have the same kind and their fields
-/// at this index have the same name.
+/// are aligned already. Fields of consecutive objects are aligned with each other if the objects
+/// have the same kind and the fields have the same name.
 fn table(entries: &mut [Entry<'_>], rows: &[usize], field: usize) {
     let alike = |&a: &usize, &b: &usize| {
         let (a, b) = (cell(&entries[a], field), cell(&entries[b], field));

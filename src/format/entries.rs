@@ -1,6 +1,6 @@
 //! Makes entries: the definitions, blocks, fields and comments that start lines of their own.
 //!
-//! This module decides to which line a comment belongs, and which blocks stay on one line.
+//! This module decides to which entry a comment belongs, and which blocks stay on one line.
 
 use std::borrow::Borrow;
 
@@ -243,8 +243,8 @@ type CommentLine<'s> = (bool, Vec<&'s str>);
 
 /// Assigns comments to entries. `gap` contains the comments between two tokens. Comments on the
 /// line of the previous entry are added to that entry. Each further line of comments becomes an
-/// entry, except the last line. Its comments are returned, because the next entry may stand on the
-/// same line. Returns `None` if there is no further line.
+/// entry, except the last line. The comments of the last line are returned, because the next entry
+/// may stand on this line, too. Returns `None` if there is no further line.
 fn comments<'s>(
     gap: Gap<'s>,
     container: Container,

@@ -65,9 +65,8 @@ pub fn format_parsed(source: &Source, parsed: &Parsed<'_>) -> Option<String> {
     (!parsed.is_doubtful || is_right_text(&formatted)).then_some(formatted)
 }
 
-/// Returns whether `text`, a formatted text, has no syntax errors. It may have some although the
-/// original text was accepted, because error recovery considers line ends, and formatting changes
-/// them.
+/// Returns whether `text`, a formatted text, has no syntax errors. Formatting may cause some, since
+/// it changes line ends, and error recovery takes line ends into account.
 fn is_right_text(text: &str) -> bool {
     let source = Source::from_text("", text);
     is_right(&source, &syntax::parse(&source, SourceId::File))
@@ -106,8 +105,8 @@ fn is_whole(tree: &Tree<'_>) -> bool {
 }
 
 /// Returns the mistakes that prevent a text from being formatted, as `check` reports them. Other
-/// mistakes of the scene are left out. The meaning of names is analyzed, too: if a field is
-/// unknown, `check` does not report that its value is missing, so this is not reported here either.
+/// mistakes of the scene are left out. As in `check`, the meaning of names is analyzed first, since
+/// a missing value is not reported if its field is unknown.
 fn mistakes(source: &Source) -> Vec<Diagnostic> {
     let sources = Sources::new(source.clone());
     let SemanticModel {
@@ -116,9 +115,9 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
         ..
     } = scene::analyze(&sources);
     let of_syntax = diagnostics.iter().filter(|it| it.is_of_syntax);
-    // Mistakes of syntax and missing values prevent formatting. But if a field or kind is unknown,
-    // `check` reports only the unknown name, not its missing value. So if there are no other
-    // mistakes, the unknown names are returned, and the user learns why the text is not formatted.
+    // Mistakes of syntax and missing values prevent formatting. If a field or kind is unknown,
+    // `check` reports the unknown name instead of a missing value. If it reports no mistake of
+    // syntax, the unknown names are returned, because they explain why the text is not formatted.
     let codes = ["pinhole::unknown_field", "pinhole::unknown_kind"];
     let is_unknown = |it: &&Diagnostic| codes.contains(&it.code.as_str());
     let unknown = diagnostics.iter().filter(is_unknown);

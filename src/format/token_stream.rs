@@ -1,6 +1,6 @@
 //! Reads tokens and comments in order, with the white space that may precede each of them.
 //!
-//! The kinds of the tokens come from the tree, and the line ends from the text.
+//! The places of the tokens come from the syntax tree, and the line ends from the text.
 
 use crate::{
     source::{Source, Span},
@@ -23,9 +23,10 @@ pub enum Before {
     Nothing,
     /// One blank.
     Space,
-    /// A blank, or a line end if the line would be too long. Such a line is broken before a token
-    /// with the lowest number. The number is twice the depth of parentheses around the token. For
-    /// the operator of a product, it is greater by 1, so that lines are broken in sums first.
+    /// A blank, or a line end if the line would be too long. A line that is too long is broken
+    /// before a token with the lowest number. The number is twice the depth of parentheses around
+    /// the token. For the operator of a product, it is greater by 1, so that a line is broken at
+    /// the operator of a sum first.
     Fold(usize),
     /// A line end.
     Line,
@@ -185,8 +186,8 @@ impl<'a, 's> TokenReader<'a, 's> {
             ValueKind::Chain { first, rest } => {
                 self.value(first, before, depth, words);
                 for step in rest {
-                    // The number of the operator's `Fold` is greater in a product than in a sum.
-                    // Lines are broken at the lowest number, so sums are broken first.
+                    // A line is broken at the operator with the lowest number. The operator of a
+                    // product gets a greater number, so a line is broken in a sum first.
                     let tightness = 2 * depth + usize::from(step.operator.is_of_product());
                     self.token(step.sign, Before::Fold(tightness), words);
                     self.value(&step.operand, Before::Space, depth, words);

@@ -131,8 +131,8 @@ impl LayoutWriter {
         let (words, behind) = words.split_at(words.len() - behind);
         let behind: Vec<&str> = behind.iter().map(|word| word.text).collect();
         push_flat(&mut line, words);
-        // A line that consists only of comments gets no column of comments: the further comments
-        // follow the first one after a blank.
+        // In a line that consists only of comments, the comments are not aligned in a column, but
+        // separated by single blanks.
         if words.len() == 1 && words.iter().all(|word| is_comment(word.text)) {
             for comment in &behind {
                 line.push(' ');

@@ -35,9 +35,9 @@ impl Encoding {
 pub struct Lines {
     starts: Vec<usize>,
     /// One entry for each character that has more than one byte, in the order of the text. The
-    /// first number is the offset of the character's end. The other two say by how much this
-    /// offset, which counts bytes, exceeds the number of UTF-16 code units and the number of
-    /// characters before it.
+    /// first number is the offset of the character's end, in bytes. The second number is this
+    /// offset minus the number of UTF-16 code units up to the character's end. The third number is
+    /// the offset minus the number of characters up to there.
     wide: Vec<[usize; 3]>,
     length: usize,
 }

@@ -39,8 +39,8 @@ pub use tree::Tree;
 use crate::{diagnostic::Diagnostic, source::Span};
 
 /// Maximum depth of nested parentheses, signs and calls in a value. A deeper value is reported as a
-/// problem, because parsing it could overflow the stack. No usual value nests nearly as deep. A
-/// larger maximum would need threads with a larger stack.
+/// problem, because parsing it could overflow the stack. Usual values nest far less. A larger
+/// maximum would need threads with a larger stack.
 pub const NESTING_LIMIT: usize = 256;
 
 /// Returns whether a text has the form of a name: it is made of the letters a to z, digits and `_`,
@@ -65,9 +65,9 @@ pub struct Parsed<'s> {
     /// Whether a mistake, such as an unclosed comment, hides a part of the text. If so, no missing
     /// block or field is reported, since the hidden part may contain it.
     pub is_cut: bool,
-    /// Whether the text contains an item that follows the grammar but looks wrong, such as a block
-    /// with an unknown field, and for which error recovery found no better reading. Such a text is
-    /// accepted. A formatted copy of it may still be rejected, because error recovery depends on
-    /// line ends. The copy must therefore be parsed again to see whether it has syntax errors.
+    /// Whether an item follows the grammar but looks wrong, such as a block with an unknown field,
+    /// and error recovery found no better reading of it. The item is accepted. Error recovery
+    /// depends on line ends, however, so it may reject the same item in a formatted copy of the
+    /// text. The formatter must therefore parse its result again.
     pub is_doubtful: bool,
 }

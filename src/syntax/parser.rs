@@ -6,9 +6,9 @@
 //! named after the rules. `recovery` reads an item that pest rejects. It also reads an item that
 //! pest accepts but that was probably meant otherwise, such as a block with an unknown field.
 //!
-//! The text is read in pieces, so that an item that pest rejects costs little. Each piece ends
-//! after a `}` or before a `let`: in a text without mistakes, every `}` ends a block and every
-//! `let` starts a definition.
+//! The text is read in pieces, because pest may look at a whole piece before it rejects an item.
+//! Each piece ends after a `}` or before a `let`. In a text without mistakes, every `}` ends a
+//! block, and every `let` starts a definition.
 
 use std::{
     ops::Range,
@@ -45,7 +45,7 @@ use crate::{
 #[grammar = "grammar/scn.pest"]
 struct Grammar;
 
-/// Precedence of the operators, the lowest first.
+/// Precedence of the operators, from the lowest to the highest.
 static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
     PrattParser::new()
         .op(Op::infix(Rule::sum, Assoc::Left))
@@ -68,9 +68,9 @@ const SHALLOW: usize = 12;
 /// stack. With a smaller one, more threads would be started.
 const SHORT_VALUE_BYTES: usize = 32;
 
-/// Minimum number of bytes of the pieces in which a text is read. The actual number is usually
-/// larger, because a piece ends at a place where the text can be split. pest may look at all of a
-/// piece before it rejects an item, so a much larger number would make mistakes expensive.
+/// Minimum length, in bytes, of the pieces in which a text is read. A piece is usually longer,
+/// because it ends at the next place where the text can be split. pest may look at a whole
+/// piece before it rejects an item, so with a much larger minimum, each mistake would take long.
 pub const CHUNK_BYTES: usize = 4096;
 
 /// Parses a file.
@@ -115,9 +115,9 @@ pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -
     recovery.finish(scan)
 }
 
-/// Reads the item at `at`, which does not follow the grammar, and returns its end. The text at `at`
-/// may instead continue the definition before it ([`goes_on`]). If pest read that definition, its
-/// node is removed, and the definition is read again from its start.
+/// Reads the item at `at`, which does not follow the grammar, and returns its end. If pest read a
+/// definition directly before `at`, and the text at `at` may continue that definition
+/// ([`goes_on`]), removes the definition's node and reads the definition again from its start.
 fn recover_item(recovery: &mut Recovery<'_, '_>, text: &str, mut at: usize) -> usize {
     if let Some(Item::Definition(last)) = recovery.items.last()
         && last.span.start >= recovery.read_to
@@ -136,8 +136,8 @@ pub fn first_from(places: &[usize], offset: usize) -> Option<usize> {
     places.get(first).copied()
 }
 
-/// Returns whether the text at `at` may continue a definition that ends at `end`: the text is on
-/// the same line, or starts with an operator or `)`.
+/// Returns whether the text at `at` may continue a definition that ends at `end`: no line end is
+/// between `end` and `at`, or the text at `at` starts with an operator or `)`.
 fn goes_on(text: &str, end: usize, at: usize) -> bool {
     let line = text.get(end..at).unwrap_or_default();
     let rest = text.get(at..).unwrap_or_default();
@@ -205,9 +205,9 @@ impl<'w, 's> TreeBuilder<'w, 's> {
     }
 
     /// Reads the items in `range`, and adds their nodes to `recovery`. An item that was probably
-    /// meant otherwise is read again by error recovery. If error recovery ends such an item at
-    /// another offset, the two do not agree, and reading stops. Returns the end of the last item
-    /// that was read, and whether the two agree everywhere.
+    /// meant otherwise is read again by error recovery. If the new reading ends at another offset,
+    /// reading stops after this item. Returns the end of the last item that was read, and whether
+    /// all new readings ended at the same offsets as the first ones.
     pub fn items(&mut self, range: Range<usize>, recovery: &mut Recovery<'_, 's>) -> (usize, bool) {
         let mut end = range.start;
         while let Some((start, item)) = self.item(end..range.end) {
@@ -238,8 +238,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         (end, true)
     }
 
-    /// Reads the first item in `range`, and returns its start and the item. Returns `None` if there
-    /// is none, or if it does not follow the grammar.
+    /// Reads the first item in `range`, and returns its start and the item. Returns `None` if
+    /// `range` contains no item, or if the first item does not follow the grammar.
     fn item(&mut self, range: Range<usize>) -> Option<(usize, Item<'s>)> {
         self.doubtful = false;
         let text = self.text.get(..range.end)?;

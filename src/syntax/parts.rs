@@ -1,7 +1,8 @@
 //! Parses a large file in parts, on several threads.
 //!
-//! In: a source. Out: the items of each part, or what is made of them, in the order of the file, if
-//! the whole file follows the grammar.
+//! In: a source, and a function that converts a list of items. Out: the function's result for each
+//! part, in the order of the file. If the file has a mistake, the results are invalid, and the
+//! caller must parse the file as a whole.
 
 use std::{
     ops::Range,
@@ -47,9 +48,9 @@ pub fn parse_in_parts<'s, R: Send>(
     }
     let parts = ranges(source, bytes);
     let words = Vocabulary::new(text);
-    // Returns the result for a part; `None` if the part does not follow the grammar or its last
-    // item or comment continues beyond its end. If no part does, every part starts at an item: the
-    // first one does, and each other one starts where the items before it end.
+    // Returns the result for a part. Returns `None` if the part does not follow the grammar, or if
+    // its last item or comment continues beyond the part's end. If no part gives `None`, every part
+    // ends after a whole item, so the next part starts at the next item.
     let read = |part: &Range<usize>| {
         let text = text.get(..part.end)?;
         let is_wanted = || !cancel::is_set(cancel);
@@ -100,8 +101,8 @@ pub fn parse_in_parts<'s, R: Send>(
 }
 
 /// Returns the byte ranges of the parts. Each part ends with a line whose last character is a `}`,
-/// which usually ends a block. Each has at least `bytes` bytes, except the last one. The text is
-/// not read here, so a part may also end within a comment.
+/// which usually ends a block. Each has at least `bytes` bytes, except the last one. This function
+/// does not look for comments, so a part may also end within a comment.
 fn ranges(source: &Source, bytes: usize) -> Vec<Range<usize>> {
     let text = source.text().as_bytes();
     let (mut parts, mut from) = (Vec::new(), source.bom_len());

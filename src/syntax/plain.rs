@@ -1,11 +1,12 @@
 //! Reads plain blocks without the generated parser, which is many times slower.
 //!
-//! In: the tokens of a text from an offset on. Out: the block at this offset, if it is plain: its
-//! values are numbers, names, colours, and lists and calls of these, each with at most one sign.
-//! The block's node is the one that would be made of pest's pairs. `None` means that pest must read
-//! the item, because it has operators, is a mistake, or was probably meant otherwise.
+//! In: the tokens of a text from an offset on. Out: the node of the block at this offset, if the
+//! block is plain. A block is plain if its values are numbers, names, colours, and lists and calls
+//! of these, each with at most one minus. The node is the same as the one that `parser` makes with
+//! pest, the generated parser. `None` means that pest must read the item, because it has operators
+//! or indices, has a mistake, or was probably meant otherwise.
 //!
-//! Scenes of many objects are nearly always plain, as they are written by programs.
+//! Programs write most scenes with many objects, and these scenes are nearly always plain.
 
 use memchr::memmem;
 
@@ -16,13 +17,13 @@ use super::{
 };
 use crate::source::{SourceId, Span};
 
-/// Maximum depth of nested parentheses in a plain value. A deeper value is left to pest. Few values
-/// are deeper, and the reader needs stack for each level.
+/// Maximum depth of nested parentheses in a plain value. A deeper value is left to pest, because
+/// the reader needs stack for each level. Few values are deeper.
 const NESTING: usize = 4;
 
-/// Reads the text from the offset `from` on if it consists of plain blocks. Returns `None` if
-/// anything else is there, or what [`Scan`](super::scan::Scan) or error recovery must look at: a
-/// comment that may be unclosed, a carriage return, or `--`.
+/// Reads the text from the offset `from` on if it consists of plain blocks, and returns `None`
+/// otherwise. Also returns `None` if the text contains a `/*`, a carriage return or `--`, because
+/// [`Scan`](super::scan::Scan) or error recovery may find a mistake there.
 pub fn blocks<'s>(
     text: &'s str,
     id: SourceId,
@@ -42,7 +43,7 @@ pub fn blocks<'s>(
     let mut items = Vec::new();
     while reader.next.kind != TokenKind::End {
         let block = reader.block()?;
-        // In `pi sphere {`, `pi` may belong to a definition before it.
+        // In `pi sphere {`, `pi` may be the end of the definition before the block.
         if block.name.is_some_and(|name| words.is_kind(name.text)) {
             return None;
         }
@@ -58,13 +59,13 @@ pub struct PlainReader<'w, 's> {
     id: SourceId,
     words: &'w Vocabulary<'s>,
     lexer: Lexer<'s>,
-    /// The token that is read next; it is no comment.
+    /// The token that is read next. It is never a comment.
     next: Token,
 }
 
 impl<'w, 's> PlainReader<'w, 's> {
-    /// Makes a reader that starts at the token `next`, which is the last that `lexer` read, and
-    /// goes on to the end of `text`.
+    /// Makes a reader of `text` that starts at the token `next`. `next` must be the token that
+    /// `lexer` returned last.
     pub fn new(
         text: &'s str,
         id: SourceId,
@@ -172,7 +173,7 @@ impl<'w, 's> PlainReader<'w, 's> {
         }
     }
 
-    /// Reads a name that is no keyword.
+    /// Reads a name. Returns `None`, and reads nothing, if the next token is a keyword or no name.
     fn name(&mut self) -> Option<Name<'s>> {
         let text = self.written();
         let is_name = self.next.kind == TokenKind::Name && !matches!(text, "let" | "for");
@@ -182,7 +183,7 @@ impl<'w, 's> PlainReader<'w, 's> {
         })
     }
 
-    /// Reads the sign `sign`. Returns `None`, and reads nothing, if the next token is another.
+    /// Reads the sign `sign`. Returns `None`, and reads nothing, if the next token is another one.
     fn sign(&mut self, sign: u8) -> Option<Span> {
         self.is_sign(sign).then(|| self.advance())
     }
@@ -198,7 +199,7 @@ impl<'w, 's> PlainReader<'w, 's> {
         self.text.get(start..end).unwrap_or_default()
     }
 
-    /// Goes on to the token after the next one, and returns the span of the next one.
+    /// Consumes the next token and returns its span.
     fn advance(&mut self) -> Span {
         let Token { start, end, .. } = self.next;
         self.next = self.lexer.token_after_comments();
@@ -215,8 +216,8 @@ mod tests {
     use super::*;
     use crate::syntax::parser::TreeBuilder;
 
-    /// Asserts for each token of a text that the block at the token, if it is plain, is the one
-    /// that pest reads, and needs no second reading. Returns the number of plain blocks.
+    /// Tries to read a plain block at each token of a text. Asserts that pest reads the same block,
+    /// and that error recovery need not read it again. Returns the number of plain blocks.
     #[track_caller]
     fn assert_as_by_pest(text: &str) -> usize {
         let (id, words) = (SourceId::File, Vocabulary::new(text));
@@ -268,7 +269,7 @@ mod tests {
         assert!(plain > 500, "{plain}");
     }
 
-    /// Parts of blocks, right and wrong, from which texts are put together.
+    /// Parts of blocks, with and without mistakes, from which the tests compose random texts.
     const PARTS: &str = "sphere box camera sampler Ball let for center radius color lookat method fov olive pi jittered ball rgb(255,165,0) rgb sqrt(2) vec3(1,2,3) cross((1,0,0),(0,1,0)) ((((1)))) (((((1))))) (1,2,3) (-1,.5,2.) (0,1,0,) (1) () 1 -1 --1 - 2.5 .5 5. 1e3 1e 1.5e-3 1_000 1__0 0x10 30deg 1.5rad 1e2deg 2degrees #fa0 #3366cc #12 #ggg ## \u{a0} \u{e9} olive\u{e9} /*c*/ /* //c\n //}\n \n \r ' \" ** := + * / ^ , ( ) { } = < { }";
 
     proptest! {

@@ -101,7 +101,7 @@ pub fn further_places(more: usize) -> String {
 /// Merges all reports of the same unknown operator, such as `−` for `-`, into the first of them.
 /// Afterwards, the fix of that report contains the edits for all places.
 pub fn merge_sign_reports(problems: &mut Vec<Diagnostic>) {
-    // Maps a message to the index of its first report in `kept` and the number of further reports.
+    // Maps each message to the index in `kept` of the first report, and to the number of others.
     let mut firsts: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     let mut kept: Vec<Diagnostic> = Vec::with_capacity(problems.len());
     for mut found in std::mem::take(problems) {

@@ -30,9 +30,9 @@ pub struct Scan {
     comments: Vec<Span>,
     /// Offsets where a value may nest deeper than [`NESTING_LIMIT`]. The scan counts parentheses
     /// and all minuses, although a minus that subtracts does not nest. Error recovery therefore
-    /// reads the items at these offsets again and counts exactly.
+    /// reads the items that contain these offsets, and counts exactly.
     pub deep: Vec<usize>,
-    /// Greatest nesting depth of a value, counted in the same way.
+    /// Greatest nesting depth of a value. Every minus counts as a level, even one that subtracts.
     pub nesting: usize,
     /// Ascending offsets where a text without mistakes can be split: after a `}` or before a `let`.
     /// Neighbouring offsets are at least [`SPLIT_SPACING_BYTES`] apart.

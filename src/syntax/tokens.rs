@@ -221,8 +221,8 @@ fn is_odd_space(c: char) -> bool {
     }
 }
 
-/// Returns the number at the start of `written`, without a unit or other text behind it; empty if
-/// there is none.
+/// Returns the number at the start of `written`, without a unit or other text after it. Returns an
+/// empty text if `written` does not start with a number.
 pub fn numeric_part(written: &str) -> &str {
     let bytes = written.as_bytes();
     let byte = |at: usize| bytes.get(at).copied().unwrap_or(b' ');
@@ -250,7 +250,7 @@ pub fn numeric_part(written: &str) -> &str {
 
 /// Returns whether a name occurs in a text outside its comments.
 pub fn has_name(text: &str, name: &str) -> bool {
-    // Most texts do not contain the name at all. The lexer runs only on the other texts.
+    // Most texts do not contain the name at all, so the lexer runs only if `text` contains it.
     let mut lexer = Lexer::new(text, 0);
     text.contains(name)
         && loop {

@@ -22,9 +22,9 @@ impl<'s> Recovery<'_, 's> {
         texts.collect::<Vec<_>>().join(", ")
     }
 
-    /// Reports several values that stand where one is expected. Returns the value that they
-    /// probably mean, or a value marked as bad if this is uncertain. A single value is returned as
-    /// it is.
+    /// Reports several values that stand where one is expected. Returns the single value that the
+    /// author probably meant, or a value marked as bad if the meaning is uncertain. If `values` has
+    /// one element, returns it and reports nothing.
     pub(super) fn adjacent_values(
         &mut self,
         mut values: Vec<Value<'s>>,
@@ -72,8 +72,8 @@ impl<'s> Recovery<'_, 's> {
                 let fix = replace(span, whole.replace(' ', ""));
                 self.report(&say::BAD_NUMBER.safe_if(false), span, &[whole, label], fix);
             }
-            // If the field requires a vector, `2 ball` is probably a product without its operator.
-            // This holds whether `ball` is a number or a vector.
+            // If the field requires a vector, `2 ball` is probably a product without its operator,
+            // whether `ball` is a number or a vector.
             (Some(Type::Vector), 2) if commas == 0 && self.is_named_factor(&first, &second) => {
                 self.missing_between(&first, &second);
             }
@@ -107,8 +107,8 @@ impl<'s> Recovery<'_, 's> {
         bad(span)
     }
 
-    /// Reports a list without parentheses. `fix` is not offered if a word ends directly before the
-    /// list, as in `center1.6, 1, 0`, because the list may start within this word.
+    /// Reports a list without parentheses. Offers `fix` unless a word ends directly before the
+    /// list, as in `center1.6, 1, 0`, where it is uncertain at which character the list starts.
     pub(super) fn missing_parentheses(&mut self, span: Span, fix: Option<Fix>) {
         let help = example(self.context.takes);
         let before = self.line_before(span.start);
@@ -154,8 +154,8 @@ impl<'s> Recovery<'_, 's> {
     pub(super) fn unopened_call(&mut self, start: usize) -> bool {
         let end = self.here().start;
         // Maximum length, in bytes, of the text between `start` and the `)`. A longer text is not
-        // searched, and nothing is reported. A value is searched again for each of its surplus `)`,
-        // so the limit bounds the time. Usual values are much shorter.
+        // searched, and nothing is reported. The limit bounds the time, because a value is searched
+        // once for each of its surplus `)`. Usual values are much shorter.
         const LONGEST: usize = 1000;
         if end - start > LONGEST {
             return false;
@@ -274,8 +274,8 @@ fn are_thousands(text: &str) -> bool {
         && text.bytes().all(|it| it.is_ascii_digit() || it == b' ')
 }
 
-/// Returns whether a surplus `)` after `value` can be removed safely. This is so if `value` stays
-/// the same wherever the missing `(` may belong.
+/// Returns whether a surplus `)` after `value` can be removed safely. It can if `value` keeps its
+/// meaning wherever the missing `(` may be inserted.
 pub(super) fn is_same_in_parentheses(value: &Value<'_>) -> bool {
     match &value.kind {
         ValueKind::Chain { first, rest } => {

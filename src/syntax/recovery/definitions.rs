@@ -46,7 +46,7 @@ impl<'s> Recovery<'_, 's> {
         definition.span = keyword.to(definition.value.span);
         let is_right = self.problems.len() == problems_before;
         // A name after the definition is correct, since it starts the next item. A separator after
-        // a correct definition is reported elsewhere. Anything else is unexpected.
+        // a correct definition is reported later, by `separator`. Any other token is unexpected.
         let is_next = self.is_name(0) || (is_right && matches!(self.word(0), ";" | ","));
         if !is_next && !self.is_boundary() {
             if is_right {
@@ -84,7 +84,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Reads the name after `let`. Several tokens before the `=` are reported together as a bad
-    /// name. Returns `None` if the name is missing.
+    /// name. Returns `None` if the name is missing or bad.
     fn name_of_definition(&mut self, keyword: Span) -> Option<Name<'s>> {
         let is_sign = matches!(self.word(0), "=" | ":" | ":=");
         if is_sign || self.is_end_of_definition() || self.is_head(0) {
@@ -190,8 +190,8 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Returns whether `name = value` changes a value rather than defining a name: `name` is
-    /// already defined, or occurs in `value`.
+    /// Returns whether `name = value` assigns a new value to a name rather than defining it: the
+    /// name is already defined, or occurs in `value`.
     fn is_assigned_again(&self, name: &str, value: &str) -> bool {
         let is_defined = |item: &Item<'s>| match item {
             Item::Definition(it) => it.name.is_some_and(|it| it.text == name),

@@ -58,9 +58,9 @@ impl<'s> Recovery<'_, 's> {
                     self.report(&say::NESTED_BRACES, span, &["braces within a block"], None);
                 }
                 name if self.is_head(0) && !(self.is(1, "{") && self.is_field_name(name)) => {
-                    // The inner block may contain fields that the outer block lacks, so no field of
-                    // the outer block is reported as missing. This is achieved by recording the
-                    // outer block's keyword as bad text.
+                    // The inner block may contain fields that the outer block lacks. If a block has
+                    // bad text before its `{`, its missing fields are not reported. The outer
+                    // block's keyword is therefore recorded as bad text.
                     block.bad.push(block.keyword());
                     had_braces = true;
                     self.nested_block();
@@ -87,9 +87,9 @@ impl<'s> Recovery<'_, 's> {
         is_one && !self.is_field_name(name)
     }
 
-    /// Returns whether the `}` of `block` was probably forgotten before the next token. This is so
-    /// if the block's kind is known and the token starts an item, is the first of its line, and is
-    /// indented no more than the block.
+    /// Returns whether the `}` of `block` was probably forgotten before the next token. This is
+    /// assumed if the block's kind is known and the token starts an item, is the first of its line,
+    /// and is indented no more than the block.
     fn is_after_block(&mut self, block: &Block<'s>) -> bool {
         let start = self.here().start;
         (self.is(0, "let") || self.starts_block() || self.starts_item())
@@ -98,8 +98,8 @@ impl<'s> Recovery<'_, 's> {
             && self.indent(start) <= self.indent(block.span.start)
     }
 
-    /// Returns whether the next token stands where the block should be closed. This is so if the
-    /// token is the last of the text, or if it is the last of its line and the next line starts an
+    /// Returns whether the next token, a closing bracket, probably stands in place of the block's
+    /// `}`. This is assumed if it is the last token of the text, or if the next line starts an
     /// item.
     pub(super) fn is_end_of_block(&mut self) -> bool {
         let is_item = self.is(1, "let") || self.is_head(1);
@@ -117,8 +117,8 @@ impl<'s> Recovery<'_, 's> {
         let mut apart = " ";
         if self.written(open.to(end)).contains('\n') {
             apart = self.source.line_end();
-            // A comment after the last field stays in its line, so the `}` is written at the end of
-            // that line.
+            // A comment after the last field stays on the field's line, so the `}` is written after
+            // the end of that line.
             let line_end = line_end(self.text, end.start);
             let rest = self.text.get(end.start..line_end).unwrap_or_default();
             if self.here().start >= line_end && !rest.contains("/*") {
@@ -306,9 +306,8 @@ impl<'s> Recovery<'_, 's> {
         self.value()
     }
 
-    /// Reports values in a block that lack a field's name. If the language's table says which
-    /// fields such values belong to, as in `sphere { (0, 1, 0) 2 }`, adds these fields to the
-    /// block.
+    /// Reports values in a block that lack a field's name. If the schema says which fields the
+    /// values belong to, as in `sphere { (0, 1, 0) 2 }`, adds these fields to the block.
     fn value_without_field(&mut self, block: &mut Block<'s>) {
         let (start, problems_before) = (self.here(), self.problems.len());
         if matches!(self.word(0), ")" | "]") {

@@ -79,8 +79,8 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Reads and reports a name from a library, such as `Math.sin(a)`, `np.cos(a)` or
-    /// `std::f64::consts::PI`. Its last word must be a function of the language or `pi`. Returns
-    /// `None` for any other text, or if the file defines `first`.
+    /// `std::f64::consts::PI`. `first` is the name's first word. The last word must be a function
+    /// of the language or `pi`. Returns `None` for any other text, or if the file defines `first`.
     pub(super) fn library_name(&mut self, first: Name<'s>) -> Option<Value<'s>> {
         let mut last = 0;
         loop {
@@ -112,8 +112,8 @@ impl<'s> Recovery<'_, 's> {
         Some(bad(span.to(self.behind())))
     }
 
-    /// Returns whether the tokens ahead contain a `?` that may belong to the current value, which
-    /// is then a condition such as `a > b ? c : d`.
+    /// Returns whether the next tokens contain a `?` that may belong to the current value. The
+    /// value is then probably a condition such as `a > b ? c : d`.
     fn has_question_mark(&mut self) -> bool {
         for at in 0..CONDITION_TOKENS {
             match self.word(at) {

@@ -13,7 +13,7 @@ use crate::{
     },
 };
 
-/// Words that are surely not an object's name if they stand before a kind, as in `a sphere {`.
+/// Words that are surely not meant as an object's name before a kind, as in `a sphere {`.
 const NO_NAMES: &str = "a an the my new add create draw make object";
 
 /// Maximum number of tokens, counted from the start of a line, that are searched for the `{` after
@@ -46,9 +46,9 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Counts the tokens of the line before the first one for which `is_end` holds. The line's
-    /// first token is not tested. If `is_end` holds for none, counts all tokens of the line. The
-    /// result is at most [`LINE_TOKENS`].
+    /// Counts the tokens from the next one up to the first for which `is_end` holds, which is not
+    /// counted. Stops at the end of the line if `is_end` holds for no token of the line. The next
+    /// token itself is not tested. The result is at most [`LINE_TOKENS`].
     pub(super) fn find_in_line(&mut self, is_end: fn(&str) -> bool) -> usize {
         let mut count = 1;
         while count < LINE_TOKENS && !self.is_on_new_line(count) && !is_end(self.word(count)) {

@@ -315,7 +315,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Reports a needless or missing comma, or a missing value beside a comma. Returns the values
-    /// of `list`, or `None` if a mistake was reported and the values are uncertain, for example
+    /// of `list`. Returns `None` if a comma is wrong and the values are uncertain, for example
     /// because their number is not in the range `count`.
     fn checked(&mut self, list: List<'s>, count: &PartCount) -> Option<Vec<Element<'s>>> {
         let elements = list.elements;
@@ -382,8 +382,8 @@ impl<'s> Recovery<'_, 's> {
         bad(name.span.to(self.behind()))
     }
 
-    /// Reports a list in other brackets than parentheses. If the list is the argument of a
-    /// function, `behind` is that function.
+    /// Reports a list in other brackets than parentheses. If the list follows a function's name,
+    /// `behind` is that function.
     fn brackets(
         &mut self,
         list: List<'s>,

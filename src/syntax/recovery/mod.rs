@@ -7,11 +7,12 @@
 //! of other languages in `foreign`. From an item without mistakes, this parser makes the same tree
 //! as pest, the generated parser. Three rules apply:
 //!
-//! - Where a token fits nowhere, reading continues at the next field, line, item or closing brace
+//! - After a token that fits nowhere, reading continues at the next field, line, item or brace
 //!   (`resync`).
 //! - Only an obvious fix is offered. A value with a mistake usually becomes `Bad`, whether it has a
 //!   fix or not, so that uses of the value cause no further reports.
-//! - If one value has different mistakes, none of their fixes is certain (`clear_uncertain_fixes`).
+//! - If one value has several different mistakes, their fixes are uncertain and are removed
+//!   (`clear_uncertain_fixes`).
 
 mod adjacent;
 mod definitions;
@@ -153,7 +154,7 @@ impl<'w, 's> Recovery<'w, 's> {
     /// Reads the item at `start` again, which follows the grammar but may have been meant
     /// otherwise. Returns the item's end if the new reading is better. A new reading of a block is
     /// better if all fields are known. A new reading of a definition is better if it finds at least
-    /// one mistake, and if all mistakes are comments or functions of another language. If the new
+    /// one mistake, and every mistake is a comment or a function of another language. If the new
     /// reading is not better, restores the items and problems and returns `None`.
     pub fn item_as_meant(&mut self, start: usize) -> Option<usize> {
         let (items, problems, read_to) = (self.items.len(), self.problems.len(), self.read_to);
@@ -202,8 +203,8 @@ impl<'w, 's> Recovery<'w, 's> {
         value
     }
 
-    /// Returns the tree of everything that was read, and its problems together with the comments
-    /// and problems of `scan`.
+    /// Returns the tree of all items that were read, their problems, and the comments and problems
+    /// of `scan`.
     pub fn finish(mut self, scan: Scan) -> Parsed<'s> {
         self.report_signs(self.problems.len());
         let mut parsed = Parsed {
@@ -362,9 +363,9 @@ impl<'w, 's> Recovery<'w, 's> {
 
     // The methods below skip text after a mistake.
 
-    /// Returns whether the next token ends every unfinished construct before it. Such a token is a
-    /// brace, `let`, the name of a field, the start of a block, or the first token of a line.
-    /// Within a block, the first token of a line is such a token only if it is a name.
+    /// Returns whether the next token ends every unfinished construct before it. This holds for a
+    /// brace, `let`, the name of a field, the start of a block, and the first token of a line.
+    /// Within a block, the first token of a line must also be a name.
     fn is_boundary(&mut self) -> bool {
         let word = self.word(0);
         matches!(word, "" | "let" | "{" | "}")
@@ -419,8 +420,8 @@ impl<'w, 's> Recovery<'w, 's> {
         let help_for_notation =
             foreign::help_for_notation(&written, expected != "a value" || is_behind_part);
         let help = help_for_notation.unwrap_or(help);
-        // If the text is a single character such as `½` or `π`, the help names its replacement.
-        // That replacement becomes the fix.
+        // If the token is a single character such as `½` or `π`, the help names its replacement,
+        // which becomes the fix.
         let text =
             help_for_notation.filter(|_| expected == "a value" && written.chars().count() == 1);
         let text = text.and_then(|help| help.strip_prefix("write `")?.strip_suffix('`'));

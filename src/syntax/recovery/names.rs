@@ -45,8 +45,7 @@ impl<'s> Recovery<'_, 's> {
             let problems_before = self.problems.len();
             self.group("]");
             self.problems.truncate(problems_before);
-            // If a field of the object follows, as in `Ball[3].center`, it is included in the
-            // report.
+            // If a field follows the brackets, as in `Ball[3].center`, the report includes it.
             if self.is(0, ".") && self.is_adjacent(0) && self.is_name(1) {
                 self.bump();
                 self.bump();

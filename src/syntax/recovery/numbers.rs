@@ -153,8 +153,8 @@ impl<'s> Recovery<'_, 's> {
             let place = if unit.starts_with('.') { span } else { behind };
             ("not a part of a number", None, place)
         };
-        // A fix that is shorter than the written text omits a part of it, so it is not safe. The
-        // fix of `4x4`, for example, is the product 16.
+        // A fix that is shorter than the written text loses a part of it, so the fix is not safe.
+        // For example, the fix of `4x4` is the product 16.
         let is_longer = |right: &String| right.len() >= written.len();
         let said = say::BAD_NUMBER.safe_if(right.as_ref().is_none_or(is_longer));
         let fix = right.map(|right| replace(span, right));

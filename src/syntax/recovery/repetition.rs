@@ -27,8 +27,8 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Reads the indices of a block, such as `for i < 8, j < i`, if there are any. If they contain
-    /// a mistake, the whole text up to the `{` is reported as one mistake. Returns `false` if the
-    /// block ends here: its indices have a mistake, and neither a `{` nor a field follows.
+    /// a mistake, skips the text up to the `{` and reports it as one mistake. Returns `false` if
+    /// the indices have a mistake and neither a `{` nor a field follows. The block then ends here.
     pub(super) fn indices(&mut self, block: &mut Block<'s>) -> bool {
         if !self.is_repetition(0) {
             return true;

@@ -1,6 +1,6 @@
-//! Collects needless separators, such as `,` and `;`, and the characters that start comments in
-//! other languages, such as `#`. A separator or character that occurs several times in a block is
-//! reported once.
+//! Collects needless separators, such as `;` and `=`, and the characters that start comments in
+//! other languages, such as `#`. If the same sign occurs several times in a block, or outside of
+//! all blocks, it is reported once, with a fix for all of its places.
 
 use super::{Recovery, numbers::unit_of};
 use crate::{
@@ -32,8 +32,8 @@ impl Recovery<'_, '_> {
     }
 
     /// Reports the recorded separators, and the recorded characters that start comments in other
-    /// languages. Gives them no fix if a problem with an index of at least `first` has none,
-    /// because the purpose of a separator is then uncertain.
+    /// languages. If one of the problems from the index `first` on has no fix, the purpose of the
+    /// separators is uncertain, and they get no fix either.
     pub(super) fn report_signs(&mut self, first: usize) {
         let since = self.problems.get(first..).unwrap_or_default();
         let is_doubtful = since.iter().any(|problem| problem.fixes.is_empty())

@@ -19,9 +19,9 @@ use crate::{
     },
 };
 
-/// Operators of the precedence of `*`, and characters that people write for them.
+/// Operators with the precedence of `*`, and characters that people write in their place.
 const PRODUCT: &[&str] = &["*", "/", "×", "·", "∗", "⋅", "÷", "∕", "⁄", "^", "**", "%"];
-/// Operators of the precedence of `+`, and characters that people write for them.
+/// Operators with the precedence of `+`, and characters that people write in their place.
 const SUM: &[&str] = &["+", "-", "−", "–", "—"];
 
 impl<'s> Recovery<'_, 's> {
@@ -40,8 +40,8 @@ impl<'s> Recovery<'_, 's> {
         self.stray_closings(start.start, value)
     }
 
-    /// Reads values for as long as they may belong to one list. Returns the values and the number
-    /// of commas between them.
+    /// Reads values until the next token cannot continue a list of values. Returns the values and
+    /// the number of commas between them.
     fn values(&mut self) -> (Vec<Value<'s>>, usize) {
         let (mut values, mut commas) = (Vec::new(), 0);
         self.too_deep = false;
@@ -114,8 +114,8 @@ impl<'s> Recovery<'_, 's> {
 
     fn is_stray_closing(&mut self) -> bool {
         let word = self.word(0);
-        // A bracket in place of the block's `}` is reported when the block ends, so it is not
-        // reported here.
+        // A bracket in place of the block's `}` is not reported here, because `body` reports it
+        // when the block ends.
         let is_end = |this: &mut Self| this.context.is_block && this.is_end_of_block();
         matches!(word, ")" | "]") && word != self.context.close && !is_end(self)
     }
@@ -278,8 +278,8 @@ impl<'s> Recovery<'_, 's> {
         self.behind()
     }
 
-    /// Returns whether no value can start at the next token, since it closes or separates
-    /// something, names a field, or starts an item.
+    /// Returns whether no value can start at the next token, because the token is a closing bracket
+    /// or a separator, names a field, or starts an item.
     pub(super) fn ends_value(&mut self) -> bool {
         let word = self.word(0);
         match self.kind(0) {
@@ -348,7 +348,7 @@ impl<'s> Recovery<'_, 's> {
                 let start = self.behind();
                 self.unexpected("a value", example(self.context.takes));
                 // The groups of a LaTeX command, as in `\frac{1}{2}`, are skipped, so that the
-                // command is one mistake.
+                // whole command is reported as one mistake.
                 if word == "\\" {
                     self.bump();
                     self.bump();
