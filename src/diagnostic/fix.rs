@@ -157,8 +157,8 @@ fn with_comments(span: Span, sources: &Sources) -> Span {
 /// Characters of white space within a line: space and tab.
 const BLANK: [char; 2] = [' ', '\t'];
 
-/// Returns whether the last line of `before` contains only spaces and tabs, or a byte order mark and
-/// spaces and tabs.
+/// Returns whether the last line of `before` contains only spaces and tabs, or a byte order mark
+/// and spaces and tabs.
 fn starts_line(before: &str) -> bool {
     let outer = before.trim_end_matches(BLANK);
     outer.is_empty() || outer.ends_with(['\n', '\u{feff}'])
